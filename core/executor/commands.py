@@ -8,7 +8,7 @@ used.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 from core.executor.hand_motion.drive_test import DriveTestPath
@@ -16,6 +16,7 @@ from core.executor.hand_motion.jog_line import Direction
 from core.executor.job import Job, Proof
 from core.executor.snapshot import InterruptedJob, Starts
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
+from core.plain_value import PlainValue
 
 SAME: Final = 0.01  # mm, largest distance between the checked position and the start position
 
@@ -58,8 +59,11 @@ def verdict(
     return next(found, None)
 
 
-class Command:
-    """Base class of all commands that can be posted to the executor."""
+class Command(PlainValue):
+    """Base class of all commands that can be posted to the executor.
+
+    Commands that are copied with another job are dataclasses.
+    """
 
     __slots__ = ()
 
@@ -72,11 +76,13 @@ class LoadJob(Command):
     proof: Proof | None = None
 
 
-@dataclass(frozen=True, slots=True)
 class GiveProof(Command):
     """Provide the proof of the loaded job if proving took longer than loading."""
 
-    proof: Proof
+    __slots__ = __match_args__ = ("proof",)
+
+    def __init__(self, proof: Proof) -> None:
+        self.proof: Final = proof
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,26 +99,28 @@ class Renew(Command):
     trouble: str = ""  # why the job cannot be proved
 
 
-@dataclass(frozen=True, slots=True)
 class LeftInterrupted(Command):
     """Report the job that was interrupted when the previous control process ended.
 
     ``logged`` is True if the log already contains the entry.
     """
 
-    left: InterruptedJob
-    logged: bool = False
+    __slots__ = __match_args__ = ("left", "logged")
+
+    def __init__(self, left: InterruptedJob, logged: bool = False) -> None:
+        self.left: Final = left
+        self.logged: Final = logged
 
 
-@dataclass(frozen=True, slots=True)
 class CycleStart(Command):
     """Start a cycle, or resume after a hold, single block, M00 or M01.
 
     The two-hand relay of the operator station has the same effect.
     """
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
+
 class FeedHold(Command):
     """Stop the axes on the path within the commit time plus v/a.
 
@@ -120,21 +128,32 @@ class FeedHold(Command):
     unknown. A press that arrives twice causes only one hold.
     """
 
-    by: str = field(default="", compare=False)
-    press: int = field(default=0, compare=False)
+    __slots__ = __match_args__ = ("by", "press")
+
+    def __init__(self, by: str = "", press: int = 0) -> None:
+        self.by: Final = by
+        self.press: Final = press
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether the other command is a feed hold too, from any source."""
+        return isinstance(other, FeedHold)
+
+    def __hash__(self) -> int:
+        return hash(FeedHold)
 
 
-@dataclass(frozen=True, slots=True)
 class Reset(Command):
     """Stop, cancel the program and return to its first line. The command also acknowledges an alarm."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
+
 class EnableDrives(Command):
     """Switch the drives on after an E-stop or at power-up."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
+
 class SetSwitch(Command):
     """Turn one of the operator's switches on or off.
 
@@ -142,18 +161,22 @@ class SetSwitch(Command):
     at once.
     """
 
-    name: str
-    on: bool
+    __slots__ = __match_args__ = ("name", "on")
+
+    def __init__(self, name: str, on: bool) -> None:
+        self.name: Final = name
+        self.on: Final = on
 
 
-@dataclass(frozen=True, slots=True)
 class FeedOverride(Command):
     """Set the feed override to ``fraction`` of the programmed feed, from 0 to 1.5."""
 
-    fraction: float
+    __slots__ = __match_args__ = ("fraction",)
+
+    def __init__(self, fraction: float) -> None:
+        self.fraction: Final = fraction
 
 
-@dataclass(frozen=True, slots=True)
 class Jog(Command):
     """Move one axis while the lease lasts, at a signed velocity in mm/s or degrees/s.
 
@@ -161,14 +184,18 @@ class Jog(Command):
     the machine's X, Y and Z, of the axis of this name in a tilted plane (3D-ROT).
     """
 
-    axis: str
-    velocity: float
-    lease: float
-    while_on: str = ""  # an input that must stay on, such as a jog button next to the axes
-    along: Direction | None = None
+    __slots__ = __match_args__ = ("axis", "velocity", "lease", "while_on", "along")
+
+    def __init__(
+        self, axis: str, velocity: float, lease: float, while_on: str = "", along: Direction | None = None
+    ) -> None:
+        self.axis: Final = axis
+        self.velocity: Final = velocity
+        self.lease: Final = lease
+        self.while_on: Final = while_on  # an input that must stay on, such as a jog button next to the axes
+        self.along: Final = along
 
 
-@dataclass(frozen=True, slots=True)
 class Touch(Command):
     """Touch the tool setter along ``axis`` in the direction ``sign`` (+1 or -1) while the lease (s) lasts.
 
@@ -176,14 +203,16 @@ class Touch(Command):
     not start again until the key is pressed again.
     """
 
-    axis: str
-    sign: int
-    lease: float
-    press: int
-    while_on: str = ""
+    __slots__ = __match_args__ = ("axis", "sign", "lease", "press", "while_on")
+
+    def __init__(self, axis: str, sign: int, lease: float, press: int, while_on: str = "") -> None:
+        self.axis: Final = axis
+        self.sign: Final = sign
+        self.lease: Final = lease
+        self.press: Final = press
+        self.while_on: Final = while_on
 
 
-@dataclass(frozen=True, slots=True)
 class JogStep(Command):
     """Move one axis by exactly ``distance`` (mm or degrees) at ``speed`` (mm/s or degrees/s).
 
@@ -191,36 +220,43 @@ class JogStep(Command):
     described in ``Jog``.
     """
 
-    axis: str
-    distance: float
-    speed: float
-    along: Direction | None = None
+    __slots__ = __match_args__ = ("axis", "distance", "speed", "along")
+
+    def __init__(self, axis: str, distance: float, speed: float, along: Direction | None = None) -> None:
+        self.axis: Final = axis
+        self.distance: Final = distance
+        self.speed: Final = speed
+        self.along: Final = along
 
 
-@dataclass(frozen=True, slots=True)
 class JogStop(Command):
     """Release the jog lease immediately. A step in progress ends early."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
+
 class DriveTest(Command):
     """Run a drive test from rest while the lease (s) lasts. ``JogStop`` ends the test.
 
     The test is refused while an axis moves or the spindle turns, or if the full path would leave the travel.
     """
 
-    path: DriveTestPath
-    lease: float
+    __slots__ = __match_args__ = ("path", "lease")
+
+    def __init__(self, path: DriveTestPath, lease: float) -> None:
+        self.path: Final = path
+        self.lease: Final = lease
 
 
-@dataclass(frozen=True, slots=True)
 class DriveTestOn(Command):
     """Renew the lease (s) of the active drive test. This command never starts a test."""
 
-    lease: float
+    __slots__ = __match_args__ = ("lease",)
+
+    def __init__(self, lease: float) -> None:
+        self.lease: Final = lease
 
 
-@dataclass(frozen=True, slots=True)
 class Wheel(Command):
     """Let the handwheel move ``axis`` by ``step`` (mm or degrees) per click while the lease (s) lasts.
 
@@ -228,34 +264,41 @@ class Wheel(Command):
     motion. If the control ends the handwheel motion, the wheel stays disabled until ``WheelOff``.
     """
 
-    axis: str
-    step: float
-    lease: float
+    __slots__ = __match_args__ = ("axis", "step", "lease")
+
+    def __init__(self, axis: str, step: float, lease: float) -> None:
+        self.axis: Final = axis
+        self.step: Final = step
+        self.lease: Final = lease
 
 
-@dataclass(frozen=True, slots=True)
 class WheelOff(Command):
     """Deselect the handwheel and stop the axis that it moves."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
+
 class SpindleLimit(Command):
     """Set the operator's spindle speed limit (rpm) of page F10; None selects the machine's maximum.
 
     The limit applies until TurnDesk is restarted.
     """
 
-    rpm: float | None
+    __slots__ = __match_args__ = ("rpm",)
+
+    def __init__(self, rpm: float | None) -> None:
+        self.rpm: Final = rpm
 
 
-@dataclass(frozen=True, slots=True)
 class Home(Command):
     """Home ``axis``, or all axes that are not homed if ``axis`` is empty."""
 
-    axis: str = ""
+    __slots__ = __match_args__ = ("axis",)
+
+    def __init__(self, axis: str = "") -> None:
+        self.axis: Final = axis
 
 
-@dataclass(frozen=True, slots=True)
 class UseOffsets(Command):
     """Use changed offset tables for the position display and for MDI.
 
@@ -263,24 +306,29 @@ class UseOffsets(Command):
     proved.
     """
 
-    tools: Mapping[int, ToolOffset]
-    secondary: Mapping[int, SecondaryOffset]
+    __slots__ = __match_args__ = ("tools", "secondary")
+
+    def __init__(self, tools: Mapping[int, ToolOffset], secondary: Mapping[int, SecondaryOffset]) -> None:
+        self.tools: Final = tools
+        self.secondary: Final = secondary
 
 
-@dataclass(frozen=True, slots=True)
 class SpindleStop(Command):
     """Stop a spindle that MDI or M02 left running. The command is refused while a program runs."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
+
 class ForceOutput(Command):
     """Switch one output manually from the test page. The command is refused unless the machine is at rest."""
 
-    name: str
-    on: bool
+    __slots__ = __match_args__ = ("name", "on")
+
+    def __init__(self, name: str, on: bool) -> None:
+        self.name: Final = name
+        self.on: Final = on
 
 
-@dataclass(frozen=True, slots=True)
 class ConfirmStart(Command):
     """Confirm that the program starts at its first line although a job was interrupted.
 
@@ -288,24 +336,30 @@ class ConfirmStart(Command):
     next start only, for 60 s, and until the machine leaves the idle state. An empty ``at`` withdraws it.
     """
 
-    at: str
+    __slots__ = __match_args__ = ("at",)
+
+    def __init__(self, at: str) -> None:
+        self.at: Final = at
 
 
-@dataclass(frozen=True, slots=True)
 class PartsMade(Command):
     """Set the number of finished parts of the loaded program."""
 
-    parts: int
+    __slots__ = __match_args__ = ("parts",)
+
+    def __init__(self, parts: int) -> None:
+        self.parts: Final = parts
 
 
-@dataclass(frozen=True, slots=True)
 class GiveClearance(Command):
     """Replace all clearances for the first move of the next start."""
 
-    clearances: tuple[Clearance, ...]
+    __slots__ = __match_args__ = ("clearances",)
+
+    def __init__(self, clearances: tuple[Clearance, ...]) -> None:
+        self.clearances: Final = clearances
 
 
-@dataclass(frozen=True, slots=True)
 class BarNextPart(Command):
     """Prevent the start of another part after the present one, for the reason ``why``.
 
@@ -314,7 +368,10 @@ class BarNextPart(Command):
     Restarts and MDI remain possible.
     """
 
-    why: str
+    __slots__ = __match_args__ = ("why",)
+
+    def __init__(self, why: str) -> None:
+        self.why: Final = why
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,133 +2,166 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Final
+
+from core.plain_value import PlainValue
 
 
-@dataclass(frozen=True, slots=True)
-class SpindleRun:
+class SpindleRun(PlainValue):
     """Run the spindle (M03, M04, S) at ``rpm``, which is negative for M04.
 
     With ``surface_speed`` (mm/s), the rpm follows the radius of the cut.
     """
 
-    rpm: float
-    surface_speed: float | None = None
+    __slots__ = __match_args__ = ("rpm", "surface_speed")
+
+    def __init__(self, rpm: float, surface_speed: float | None = None) -> None:
+        self.rpm: Final = rpm
+        self.surface_speed: Final = surface_speed
 
 
-@dataclass(frozen=True, slots=True)
-class SpindleStop:
+class SpindleStop(PlainValue):
     """Stop the spindle (M05). With ``stands``, the next block waits until the spindle is at rest."""
 
-    stands: bool = False
+    __slots__ = __match_args__ = ("stands",)
+
+    def __init__(self, stands: bool = False) -> None:
+        self.stands: Final = stands
 
 
-@dataclass(frozen=True, slots=True)
-class SpindleLock:
+class SpindleLock(PlainValue):
     """Stop the spindle and hold it as the C axis (M19, M89, G89).
 
     With ``orient`` (M19), C then turns to 0.
     """
 
-    orient: bool
+    __slots__ = __match_args__ = ("orient",)
+
+    def __init__(self, orient: bool) -> None:
+        self.orient: Final = orient
 
 
-@dataclass(frozen=True, slots=True)
-class SpindleOrient:
+class SpindleOrient(PlainValue):
     """Stop the spindle (M19 of Klartext, SPOS) and hold it at ``angle``, in degrees from its index.
 
     ``sense`` is the direction of rotation: 1 as for M3, -1 as for M4, 0 by the shorter distance.
     """
 
-    angle: float
-    sense: int = 0
+    __slots__ = __match_args__ = ("angle", "sense")
+
+    def __init__(self, angle: float, sense: int = 0) -> None:
+        self.angle: Final = angle
+        self.sense: Final = sense
 
 
-@dataclass(frozen=True, slots=True)
-class Coolant:
+class Coolant(PlainValue):
     """Turn the coolant on (M08) or off (M09)."""
 
-    on: bool
+    __slots__ = __match_args__ = ("on",)
+
+    def __init__(self, on: bool) -> None:
+        self.on: Final = on
 
 
-@dataclass(frozen=True, slots=True)
-class Collet:
+class Collet(PlainValue):
     """Clamp (M12) or unclamp (M13) the collet."""
 
-    closed: bool
+    __slots__ = __match_args__ = ("closed",)
+
+    def __init__(self, closed: bool) -> None:
+        self.closed: Final = closed
 
 
-@dataclass(frozen=True, slots=True)
-class Output:
+class Output(PlainValue):
     """Switch the output that the machine file assigns to an M function, such as M25 or M26."""
 
-    name: str
-    on: bool
+    __slots__ = __match_args__ = ("name", "on")
+
+    def __init__(self, name: str, on: bool) -> None:
+        self.name: Final = name
+        self.on: Final = on
 
 
-@dataclass(frozen=True, slots=True)
-class ToolChange:
+class ToolChange(PlainValue):
     """Activate another tool offset (T). No axis moves."""
 
-    tool: int
+    __slots__ = __match_args__ = ("tool",)
+
+    def __init__(self, tool: int) -> None:
+        self.tool: Final = tool
 
 
-@dataclass(frozen=True, slots=True)
-class WorkShift:
+class WorkShift(PlainValue):
     """Add to the work shift (G10) that the next T activates, in mm with X as a radius."""
 
-    x: float
-    z: float
+    __slots__ = __match_args__ = ("x", "z")
+
+    def __init__(self, x: float, z: float) -> None:
+        self.x: Final = x
+        self.z: Final = z
 
 
-@dataclass(frozen=True, slots=True)
-class Preset:
+class Preset(PlainValue):
     """Assign these program coordinates to the present position (G92), in mm with X as a radius."""
 
-    x: float
-    z: float
+    __slots__ = __match_args__ = ("x", "z")
+
+    def __init__(self, x: float, z: float) -> None:
+        self.x: Final = x
+        self.z: Final = z
 
 
-@dataclass(frozen=True, slots=True)
-class ProgramStop:
+class ProgramStop(PlainValue):
     """Wait for Cycle Start (M00, or M01 if ``optional``) and show ``message`` in large type."""
 
-    optional: bool
-    message: str = ""
+    __slots__ = __match_args__ = ("optional", "message")
+
+    def __init__(self, optional: bool, message: str = "") -> None:
+        self.optional: Final = optional
+        self.message: Final = message
 
 
-@dataclass(frozen=True, slots=True)
-class ProgramEnd:
+class ProgramEnd(PlainValue):
     """End the program: M30 resets the M functions (``reset``), and M02 leaves them as they are."""
 
-    reset: bool
+    __slots__ = __match_args__ = ("reset",)
+
+    def __init__(self, reset: bool) -> None:
+        self.reset: Final = reset
 
 
-@dataclass(frozen=True, slots=True)
-class RepeatOff:
+class RepeatOff(PlainValue):
     """Cancel Cycle Repeat (M31)."""
 
+    __slots__ = ()
 
-@dataclass(frozen=True, slots=True)
-class WaitInput:
+
+class WaitInput(PlainValue):
     """Wait until the terminal is closed (``closed`` is True) or open (M91 to M94)."""
 
-    terminal: str
-    closed: bool
+    __slots__ = __match_args__ = ("terminal", "closed")
+
+    def __init__(self, terminal: str, closed: bool) -> None:
+        self.terminal: Final = terminal
+        self.closed: Final = closed
 
 
-@dataclass(frozen=True, slots=True)
-class AskInput:
+class AskInput(PlainValue):
     """Stop all motion, because the interpreter reads this input next (M95, M97)."""
 
-    terminal: str
+    __slots__ = __match_args__ = ("terminal",)
+
+    def __init__(self, terminal: str) -> None:
+        self.terminal: Final = terminal
 
 
-@dataclass(frozen=True, slots=True)
-class Dwell:
+class Dwell(PlainValue):
     """Wait at rest for a number of seconds (G04)."""
 
-    seconds: float
+    __slots__ = __match_args__ = ("seconds",)
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds: Final = seconds
 
 
 Action = (

@@ -1,0 +1,67 @@
+"""Actions and commands as values: what is equal, and that they do not change."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import pytest
+
+from core.executor import commands
+from core.executor.commands import FeedHold, GiveProof, JogStep
+from core.interpreter.shared import actions
+from core.interpreter.shared.actions import Collet, Coolant, RepeatOff, SpindleRun
+from core.plain_value import PlainValue
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (Coolant(True), Coolant(True)),
+        (RepeatOff(), RepeatOff()),
+        (SpindleRun(-900.0), SpindleRun(-900.0, None)),
+        (JogStep("X", 1.0, 2.0), JogStep("X", 1.0, 2.0, None)),
+        (FeedHold("key", 3), FeedHold("panel", 4)),
+    ],
+)
+def test_equal_values_have_one_hash(one: PlainValue, other: PlainValue) -> None:
+    assert one == other
+    assert len({one, other}) == 1
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (Coolant(True), Coolant(False)),
+        (Coolant(True), Collet(True)),
+        (Coolant(True), True),
+        (RepeatOff(), commands.Reset()),
+        (FeedHold(), commands.Reset()),
+        (SpindleRun(900.0, 1.0), SpindleRun(900.0, 2.0)),
+        (actions.SpindleStop(), commands.SpindleStop()),
+    ],
+)
+def test_values_of_other_classes_or_with_other_attributes_differ(one: PlainValue, other: object) -> None:
+    assert one != other
+
+
+def test_a_value_shows_its_attributes() -> None:
+    assert repr(actions.Output("m25", True)) == "Output(name='m25', on=True)"
+
+
+def test_a_pattern_finds_the_attributes_in_the_order_of_the_arguments() -> None:
+    match actions.WaitInput("TB2-9", False):
+        case actions.WaitInput(terminal, closed):
+            assert (terminal, closed) == ("TB2-9", False)
+
+
+def test_a_copy_is_equal() -> None:
+    step = JogStep("Z", -0.5, 3.0, (0.0, 0.0, 1.0))
+    assert copy.deepcopy(step) == step == pickle.loads(pickle.dumps(step))
+
+
+def test_a_value_has_no_other_attributes_and_no_other_arguments() -> None:
+    with pytest.raises(AttributeError):
+        Coolant(True).off = False  # type: ignore[attr-defined]
+    with pytest.raises(TypeError):
+        GiveProof()  # type: ignore[call-arg]
