@@ -2,7 +2,7 @@
 
 The control stops at the first error. The interpreter continues, so that one pass reports all independent
 errors. A rejected line may have started the spindle or set the feed. Errors that may be consequences of such
-a line are reported only after the line is corrected.
+a line are reported only after the line is corrected. The patterns are compiled when a line is rejected.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ _PLACE = frozenset({
     "cycle-no-way", "cycle-start-near", "cycle-quadrant", "cycle-nothing", "cycle-depth",
 })  # fmt: skip
 _SETS = (
-    (re.compile(r"M0*[34](?![0-9])|M[O0]*[34]|S[0-9.]|M19|M89|G9[67]"), _SPINDLE),
-    (re.compile(r"F[-+0-9.O]|G9[45]"), _FEED),
-    (re.compile(r"T[0-9O]"), frozenset({"tool-first-move", "no-tool"})),
-    (re.compile(r"G7[0-3]|G9[01O2]|[XZ]"), _PLACE),
-    (re.compile(r"G0*[23](?![0-9])"), frozenset({"corner-without-move"})),
-    (re.compile(r"G35"), frozenset({"thread-lead-range", "coarse-order"})),
-    (re.compile(r"M1[23]"), frozenset({"collet-open"})),
+    (r"M0*[34](?![0-9])|M[O0]*[34]|S[0-9.]|M19|M89|G9[67]", _SPINDLE),
+    (r"F[-+0-9.O]|G9[45]", _FEED),
+    (r"T[0-9O]", frozenset({"tool-first-move", "no-tool"})),
+    (r"G7[0-3]|G9[01O2]|[XZ]", _PLACE),
+    (r"G0*[23](?![0-9])", frozenset({"corner-without-move"})),
+    (r"G35", frozenset({"thread-lead-range", "coarse-order"})),
+    (r"M1[23]", frozenset({"collet-open"})),
 )
 """Words of a refused line, and the errors of later lines that may follow from it."""
 
@@ -41,7 +41,7 @@ class Consequences:
         """Record a rejected line; ``place_known`` means that the position after the line is known."""
         code = text.upper()
         for words, codes in _SETS:
-            if words.search(code) and not (place_known and codes is _PLACE):
+            if re.search(words, code) and not (place_known and codes is _PLACE):
                 self._uncertain |= codes
 
     def includes(self, code: str) -> bool:
@@ -50,9 +50,9 @@ class Consequences:
 
 
 # the center words of an arc on a separate line
-_CENTER = re.compile(r"\s*((?:[IKR][-+]?[\d.]+\s*)+)(?:\(.*)?$")
-_BARE_ARC = re.compile(r"[^(IKR]*(?P<arc>G0[23])[^(IKR]*(?:\(.*)?$")
-_SHORT_END = re.compile(r"M2\b")
+_CENTER = r"\s*((?:[IKR][-+]?[\d.]+\s*)+)(?:\(.*)?$"
+_BARE_ARC = r"[^(IKR]*(?P<arc>G0[23])[^(IKR]*(?:\(.*)?$"
+_SHORT_END = r"M2\b"
 
 
 def without_follow_ups(problems: Sequence[Diagnostic], lines: Sequence[str]) -> list[Diagnostic]:
@@ -60,7 +60,7 @@ def without_follow_ups(problems: Sequence[Diagnostic], lines: Sequence[str]) -> 
 
     An arc whose center is on the next line is one mistake. After a rejected M2, no line is after the end.
     """
-    ends = any(each.code == "m-digits" and _SHORT_END.match(each.message) for each in problems)
+    ends = any(each.code == "m-digits" and re.match(_SHORT_END, each.message) for each in problems)
     rest = [each for each in problems if not (ends and each.code == "after-end")]
     return [_divided_arc(each, lines) or each for each in rest]
 
@@ -69,7 +69,7 @@ def _divided_arc(found: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
     """Return the finding for an arc whose center words are on the next line, or None."""
     if found.code != "word-unused" or found.line < 2:
         return None
-    arc, center = _BARE_ARC.match(lines[found.line - 2]), _CENTER.match(lines[found.line - 1])
+    arc, center = re.match(_BARE_ARC, lines[found.line - 2]), re.match(_CENTER, lines[found.line - 1])
     if arc is None or center is None:
         return None
     text = "The arc center is programmed on the next line."

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 from core.language.line_reading import SIGNED
@@ -27,7 +28,7 @@ class Intent(NamedTuple):
 class _Pattern(NamedTuple):
     """A form that belongs to another control. The message and the remedy may depend on the match."""
 
-    form: re.Pattern[str]
+    form: str
     message: str
     hint: Callable[[re.Match[str]], str]
 
@@ -57,93 +58,99 @@ _ROUGHING = "Write G75InUnFn, then the contour and RF."
 _THREAD = "Write G33XnZnInKn."
 _PATTERNS = (
     _Pattern(
-        re.compile(r"^(?=O(?:<|[0-9]+(?:SUB|CALL|IF|WHILE|REPEAT|ENDSUB|ENDIF|ENDWHILE|ENDREPEAT|RETURN)))"),
+        r"^(?=O(?:<|[0-9]+(?:SUB|CALL|IF|WHILE|REPEAT|ENDSUB|ENDIF|ENDWHILE|ENDREPEAT|RETURN)))",
         "LinuxCNC O words are not supported. On this control, write a subroutine as }n … M99 "
         "and call it with M98Pn.",
         _always("Write the subroutine as }n … M99 and call it with M98Pn."),
     ),
     _Pattern(
-        re.compile(r"^(?=#<)"),
+        r"^(?=#<)",
         "Variables are not supported.",
         _always("Write the number in place of the variable."),
     ),
     _Pattern(
-        re.compile(r"(?=G[78](?![0-9]))"),
+        r"(?=G[78](?![0-9]))",
         "On this control, G72 (diameter programming) and G73 (radius programming) "
         "replace the LinuxCNC codes G7 and G8.",
         lambda match: Message("Write {name}.", name="G72" if match.string[match.end() + 1] == "7" else "G73"),
     ),
     _Pattern(
-        re.compile(rf"(?<=G04)([PXU])({SIGNED})"),
+        rf"(?<=G04)([PXU])({SIGNED})",
         "G04 takes seconds as F.",
         _dwell,
     ),
     _Pattern(
-        re.compile(r"(?<=G70)(?=.*[PQ])"),
+        r"(?<=G70)(?=.*[PQ])",
         "On this control, G70 selects inches; the last pass of G75 finishes a contour.",
         _always("Delete the line, because G75 ends with a pass along the contour."),
     ),
     _Pattern(
-        re.compile(r"(?<=G71)(?=.*[UWPQ])"),
+        r"(?<=G71)(?=.*[UWPQ])",
         "G71 selects metric here; roughing to a contour is G75.",
         _always(_ROUGHING),
     ),
     _Pattern(
-        re.compile(r"(?<=G72)(?=.*[UWPQ])"),
+        r"(?<=G72)(?=.*[UWPQ])",
         "On this control, G72 selects diameter programming; G75 roughs to a contour.",
         _always(_ROUGHING),
     ),
     _Pattern(
-        re.compile(r"(?<=G73)(?=.*[UWPQ])"),
+        r"(?<=G73)(?=.*[UWPQ])",
         "On this control, G73 selects radius programming; G75 roughs to a contour.",
         _always(_ROUGHING),
     ),
     _Pattern(
-        re.compile(r"(?<=G74)(?=.*[PQRW])"),
+        r"(?<=G74)(?=.*[PQRW])",
         "On this control, G74 is the box roughing cycle; G83 drills in pecks.",
         _always("Write G83ZnKnFn."),
     ),
     _Pattern(
-        re.compile(r"(?<=G75)(?=.*[QRW])"),
+        r"(?<=G75)(?=.*[QRW])",
         "On this control, G75 roughs a contour; it does not peck a groove.",
         _always("Write separate moves for the groove, or use G74."),
     ),
     _Pattern(
-        re.compile(r"(?<=G76)(?=.*[PQRXZ])"),
+        r"(?<=G76)(?=.*[PQRXZ])",
         "G76 is the minimum rpm for constant surface speed here; threads are G33.",
         _always(_THREAD),
     ),
     _Pattern(
-        re.compile(rf"(?<=G8[13])[^Q]*Q({SIGNED})"),
+        rf"(?<=G8[13])[^Q]*Q({SIGNED})",
         "The peck depth is K here.",
         lambda match: Message("Write K{word} in G83.", word=match[1]),
     ),
     _Pattern(
-        re.compile(r"(?<=G92)(?=S[0-9.]+$)"),
+        r"(?<=G92)(?=S[0-9.]+$)",
         "On this control, G92 presets the position; use G77 to set the maximum rpm for "
         "constant surface speed.",
         lambda match: Message("Write G77{string}.", string=match.string[match.end() :]),
     ),
     _Pattern(
-        re.compile(r"(?<=M98)P[0-9]+L([0-9]+)"),
+        r"(?<=M98)P[0-9]+L([0-9]+)",
         "M98 has no repeat count.",
         lambda match: Message("Write LS{word} before the call and LF after it.", word=match[1]),
     ),
     _Pattern(
-        re.compile(r"(?<=[XZIKRFU])([0-9]+)/([0-9]+)(?![0-9])"),
+        r"(?<=[XZIKRFU])([0-9]+)/([0-9]+)(?![0-9])",
         "Fractions are not read.",
         _decimal,
     ),
 )
 
 
+@cache
+def _compiled() -> tuple[tuple[re.Pattern[str], str, Callable[[re.Match[str]], str]], ...]:
+    """Return the patterns, compiled for the first line that may match; many programs have no such line."""
+    return tuple((re.compile(form), message, hint) for form, message, hint in _PATTERNS)
+
+
 def intent_of(code: str) -> Intent | None:
     """Return the intended code of a line for another control; None for any other line."""
-    for form, message, hint in _PATTERNS:
+    for form, message, hint in _compiled():
         match = form.search(code)
         if match is not None:
             return Intent(_start(code, match), "other-control", message, hint(match))
-    for found in _CODE.finditer(code):
+    for found in re.finditer(_CODE, code):
         habit = other_controls.meaning_here(found[0])
         if habit is not None:
             message = Message(
@@ -157,15 +164,15 @@ def _start(code: str, match: re.Match[str]) -> int:
     """Return the index of the code or letter that precedes the match of a pattern."""
     if match.start() == 0 or code[match.start()] in _WORDS_OF_THEIR_OWN:
         return match.start()
-    return match.start() - (3 if _AFTER_CODE.search(code[: match.start()]) else 1)
+    return match.start() - (3 if re.search(_AFTER_CODE, code[: match.start()]) else 1)
 
 
-_CODE = re.compile(r"G[0-9]{2}(?![0-9.])")
+_CODE = r"G[0-9]{2}(?![0-9.])"
 _WORDS_OF_THEIR_OWN = "GO#"
-_AFTER_CODE = re.compile(r"[GM][0-9]{2}$")
-_LETTER_L = re.compile(r"(?<=[A-Za-z0-9.+-])l(?=[0-9.A-Za-z]|\s|$)")
+_AFTER_CODE = r"[GM][0-9]{2}$"
+_LETTER_L = r"(?<=[A-Za-z0-9.+-])l(?=[0-9.A-Za-z]|\s|$)"
 
 
 def with_digit_one(code: str) -> str:
     """Return the line with 1 in place of each letter l that is part of a number."""
-    return _LETTER_L.sub("1", code)
+    return re.sub(_LETTER_L, "1", code)
