@@ -16,6 +16,9 @@ from typing import Any, NoReturn
 from app.desk.command_errors import EXIT_USAGE, CommandError
 from core.message import Message, nearest
 
+# The texts are English. For each of them, argparse would search the system for catalogs of translations.
+argparse._ = str  # type: ignore[attr-defined]
+
 _USUAL_WIDTH = 80  # characters
 BEFORE = ("machine", "program", "offsets")
 """Options of the screen."""

@@ -9,8 +9,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
 from core.message import Message
 
@@ -83,6 +81,8 @@ def _channel(record: Record, channel: Channel) -> dict[str, object]:
 
 def _bounds(record: Record, channel: Channel) -> tuple[float, float] | tuple[None, None]:
     """Return the smallest and largest known value; None for both if no value is known."""
+    import numpy as np
+
     column = record.columns[channel.name]
     known = column[~np.isnan(column)]
     return (float(known.min()), float(known.max())) if len(known) else (None, None)

@@ -10,14 +10,21 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.actions.meant_changes import Changes, add_consent_options, demand_meant
-from app.cli.who_changes import COMMAND_LINE, add_as_option, note_change, who_changes, who_may
+from app.cli.who_changes import (
+    COMMAND_LINE,
+    add_as_option,
+    add_consent_options,
+    note_change,
+    who_changes,
+    who_may,
+)
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, as_command_error
 from app.desk.data_folder import data_folder
 from core.access.access_table import Act
 from core.message import Message
 
 if TYPE_CHECKING:
+    from app.cli.actions.meant_changes import Changes
     from app.cli.program_options import SubParsers
     from core.store.store import Store
     from core.store.store_rows import Row, Value
@@ -116,6 +123,7 @@ def _export(args: argparse.Namespace) -> int:
 
 
 def _import(args: argparse.Namespace) -> int:
+    from app.cli.actions.meant_changes import demand_meant
     from app.offsets.offsets_file import read_rows, read_shape_rows
     from core.store import store_export
     from core.store.offsets.offset_tables import Reason

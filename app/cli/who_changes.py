@@ -37,6 +37,19 @@ def add_as_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_consent_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options ``--yes`` and ``--machine`` for suspicious changes of offsets."""
+    parser.add_argument(
+        "--yes", action="store_true", help="make suspicious offset changes without asking for confirmation"
+    )
+    parser.add_argument(
+        "--machine",
+        metavar="FILE",
+        help="machine file with the travel limits for the offsets (default: the machine file of "
+        "the operator screen)",
+    )
+
+
 def who_changes(store: Store, args: argparse.Namespace, *acts: Act) -> str:
     """Return the name of the user for the history.
 

@@ -49,6 +49,38 @@ def test_prove_does_not_load_what_it_does_not_use(loaded: frozenset[str], unused
     assert not [name for name in loaded if f"{name}.".startswith(f"{unused}.")]
 
 
+HELP = """
+import sys
+from app.cli.main import main
+try:
+    main(sys.argv[1:])
+except SystemExit:
+    pass
+print(*sys.modules, file=sys.stderr)
+"""
+OF_A_HELP = ("numpy", "sqlite3", "dataclasses", "locale", "core.store", "core.machine", "core.language")
+OF_A_COMPLETION = ("numpy", "sqlite3", "core.store.store", "core.store.database", "core.machine")
+
+
+def modules_of(*words: str) -> list[str]:
+    done = subprocess.run([sys.executable, "-c", HELP, *words], check=True, capture_output=True, text=True)
+    assert done.stdout
+    return done.stderr.split()
+
+
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_help_and_version_load_no_command_and_no_store(option: str) -> None:
+    loaded = modules_of(option)
+    assert not [name for name in loaded for unused in OF_A_HELP if f"{name}.".startswith(f"{unused}.")]
+    assert not [name for name in loaded if name.startswith("app.cli.") and name.endswith("_command")]
+
+
+def test_completion_loads_all_commands_but_neither_numpy_nor_the_store() -> None:
+    loaded = modules_of("setup", "completion", "bash")
+    assert {"app.cli.prove_command", "app.cli.scope_command", "app.cli.store_command"} <= set(loaded)
+    assert not [name for name in loaded for unused in OF_A_COMPLETION if f"{name}.".startswith(f"{unused}.")]
+
+
 def test_it_loads_what_it_does_use(loaded: frozenset[str]) -> None:
     used = {"core.interpreter.omniturn", "core.motion.window_planner", "core.proving.part_proof"}
     assert used <= loaded

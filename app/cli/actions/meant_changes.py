@@ -31,19 +31,6 @@ if TYPE_CHECKING:
 Changes = Mapping[Kind, Mapping[int, Mapping[str, Value]]]
 
 
-def add_consent_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options ``--yes`` and ``--machine``."""
-    parser.add_argument(
-        "--yes", action="store_true", help="make suspicious offset changes without asking for confirmation"
-    )
-    parser.add_argument(
-        "--machine",
-        metavar="FILE",
-        help="machine file with the travel limits for the offsets (default: the machine file of "
-        "the operator screen)",
-    )
-
-
 def demand_meant(store: Store, args: argparse.Namespace, changes: Changes) -> None:
     """Raise CommandError if a value exceeds the travel, or if a suspicious change is not confirmed.
 
