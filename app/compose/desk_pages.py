@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 
 from app.compose.desk_part import KeptOfProgram, nothing_kept
 from app.compose.extra import extras
-from app.compose.machine.kinematics_chain import kinematics_of
 from app.compose.runs.journal import Journal
 from app.compose.scope_desk import register_scope
 from app.compose.stored_offsets import Offsets, shapes_at_hand, stored_offsets
@@ -27,7 +26,6 @@ from app.desk.programs.program_loading import LoadingSteps, Proved
 from app.desk.status.busy_notice import BusyNotice
 from app.jog.hand_functions import HandFunctions
 from app.mdi.mdi_model import MdiLine, MdiModel
-from app.offsets.mill_touch import MillLives, MillTouch
 from app.offsets.offset_effect import Effect
 from app.part.part_sheet import PartSheet
 from app.production.parts_book import PartsBook, tools_of
@@ -157,6 +155,9 @@ def _register_lines(setup: PageSetup) -> None:
 
 def _register_mill_touch(setup: PageSetup) -> None:
     if setup.machine.kind == "mill":
+        from app.compose.machine.kinematics_chain import kinematics_of
+        from app.offsets.mill_touch import MillTouch
+
         setup.desk.pages.attach(MillTouch(setup.desk, kinematics_of(setup.machine)))
 
 
@@ -211,6 +212,8 @@ def register_production(setup: PageSetup) -> None:
     desk.pages.attach(watch)
     desk.pages.add_run_watcher(watch)
     if tools is Kind.MILL_TOOL:
+        from app.offsets.mill_touch import MillLives
+
         lives = watch.lives
         lives_of_mill = MillLives(lives.lives, lambda number, cut: lives.set_used(number, cut, desk.say))
         desk.pages.attach(lives_of_mill)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from app.desk.pages.code_help import CodeHelp
 from app.desk.pages.page_entry import mdi_barred
@@ -14,10 +15,12 @@ from app.desk.status import prompt_line
 from app.desk.translation import tr
 from core.executor.commands import Command, SpindleStop
 from core.executor.snapshot import CYCLE, Snapshot, State
-from core.language.code_book import CodeBook, Entry
 from core.language.diagnostics import Diagnostic
 from core.message import Message
 from core.store.store_errors import StoreError
+
+if TYPE_CHECKING:
+    from core.language.code_book import CodeBook, Entry
 
 KEY = "mdi"
 LONGEST = 120  # Maximum characters of a line.

@@ -21,12 +21,13 @@ R_PARAMETERS = "r-parameters"  # Setting with the R parameters that have a value
 
 def r_parameters(kept: object) -> dict[int, float]:
     """Return the R parameters from the stored setting. Invalid entries are ignored."""
+    if not kept or not isinstance(kept, dict):
+        return {}
     from core.language.sinumerik.sinumerik_words import MOST_R
 
-    pairs = kept.items() if isinstance(kept, dict) else ()
     return {
         int(number): float(value)
-        for number, value in pairs
+        for number, value in kept.items()
         if str(number).isdecimal() and int(number) <= MOST_R and isinstance(value, int | float)
     }
 

@@ -25,12 +25,15 @@ desk.close()
 OF_LATER = (
     *("app.editor", "app.programs.program_list", "app.scope", "app.special.setup_sheet", "app.transfer"),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
+    *("core.language.sinumerik", "core.language.code_book", "app.offsets.mill_touch"),
+    *("core.part.insert_codes", "core.proving.program_tools", "drivers.hal", "drivers.grblhal.grblhal_table"),
     *("core.interpreter.omniturn.flow.loops_and_subroutines", "core.part.solid_picture"),
     *("core.proving.part_proof", "drivers.canopen.canopen_machine", "drivers.driver_host"),
     *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.transfer"),
     *("ezdxf", "pyqtgraph", "svgelements"),
 )
 OF_FEATURES = (
+    *("core.extras.quality.measured_feature", "core.extras.quality.control_charts"),
     *("app.extras.quality.shift_page", "app.extras.shapes.shapes_model", "core.extras.shapes.shape"),
     *("app.extras.sharing.sharing_model", "app.extras.pendant.driver.pendant_station"),
     *("app.extras.mtconnect.shop_floor", "app.extras.office.office_desk"),

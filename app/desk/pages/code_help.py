@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from core.language.code_book import CodeBook, Entry
+if TYPE_CHECKING:
+    from core.language.code_book import CodeBook, Entry
 
 
 @dataclass(slots=True)

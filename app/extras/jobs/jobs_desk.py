@@ -20,7 +20,6 @@ from app.extras.jobs.jobs_watch import FEATURE, JobProofs, JobsWatch, ProvedJob
 from app.production.parts_watch import PartsWatch
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.proving.program_tools import PartSetting
 from core.store.store_rows import ToolRow
 
 Before = Callable[[str], tuple[str, dict[int, ToolRow]]]
@@ -59,6 +58,7 @@ def _proved(
     Runs on a worker. Raises ValueError if the program is not in the list.
     """
     from app.special.setup_sheet import setup_sheet
+    from core.proving.program_tools import PartSetting
 
     path = desk.programs.folders.find(program)
     if path is None:

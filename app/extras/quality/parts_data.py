@@ -8,17 +8,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.desk.status.formats import MM_PER_INCH
 from app.production.cycle_recorder import COMPLETE
 from app.production.parts_book import NEWEST, PartsBook
-from core.extras.quality.measured_feature import CorrectedBy, Feature, FeatureKind
 from core.file_placing import write_in_place
 from core.store.production import measured_parts, part_cycles
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CorrectionRow, CycleRow, CycleTime
 from core.store.store import Store
 from core.store.store_rows import utc
+
+if TYPE_CHECKING:
+    from core.extras.quality.measured_feature import Feature
 
 FEATURE = "quality"  # name of this data in the parts book
 _DAYS = timedelta(days=2)
@@ -56,6 +59,8 @@ class PartsData:
 
 def feature_of(row: FeatureRow) -> Feature:
     """Return the feature for a stored row."""
+    from core.extras.quality.measured_feature import CorrectedBy, Feature, FeatureKind
+
     return Feature(
         row.name,
         FeatureKind(row.kind),
