@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from app.desk.status import formats
 from app.desk.status.modal_rows import NONE, ModalRow, rows_of
@@ -14,7 +15,6 @@ from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg as Drawn
 from core.executor.job import Job
 from core.executor.snapshot import CONTROL_LOST, Snapshot
-from core.geometry.rotary_axes import Kinematics
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_approach import (
     Choices,
@@ -32,6 +32,9 @@ from core.interpreter.restart.restart_retract import Retract, ToolPlace
 from core.interpreter.shared.actions import Coolant, Output, SpindleLock, SpindleOrient, SpindleRun
 from core.interpreter.shared.checkpoint import ApproachStep, AxesLeg, Begin, Checkpoint, FunctionStep, Leg
 from core.message import Message
+
+if TYPE_CHECKING:
+    from core.geometry.rotary_axes import Kinematics
 
 # --- retract from the part ----------------------------------------------------------------------------
 

@@ -11,15 +11,17 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from math import isfinite
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from core.alarms import Code
 from core.interpreter.shared.checkpoint import KeptPass
 from core.interpreter.shared.modal_state import Modal
-from core.interpreter.shared.working_plane import Swivel
 from core.message import Message
 from core.ports import FloatArray, Unknown
 from core.tool_edges import edge_name
+
+if TYPE_CHECKING:
+    from core.interpreter.shared.working_plane import Swivel
 
 CONTROL_LOST = "THE CONTROL LOST POWER OR ITS PROCESS WAS KILLED"
 CLOSED = "TURNDESK WAS CLOSED"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TypedDict
+from typing import TYPE_CHECKING, TypedDict
 
 from core.executor.control_status import ControlStatus
 from core.executor.machine_context import MachineContext
@@ -13,8 +13,10 @@ from core.executor.snapshot import Snapshot, Starts, State
 from core.interpreter.shared.actions import ProgramEnd, ProgramStop
 from core.interpreter.shared.elementary_blocks import Block, Kind
 from core.interpreter.shared.modal_state import Modal
-from core.interpreter.shared.working_plane import Swivel
 from core.ports import AxisSample
+
+if TYPE_CHECKING:
+    from core.interpreter.shared.working_plane import Swivel
 
 
 class _Played(TypedDict):

@@ -26,6 +26,7 @@ OF_LATER = (
     *("app.editor", "app.programs.program_list", "app.scope", "app.special.setup_sheet", "app.transfer"),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
     *("core.language.sinumerik", "core.language.code_book", "app.offsets.mill_touch"),
+    *("core.geometry.rotary_axes", "core.interpreter.shared.working_plane"),
     *("core.part.insert_codes", "core.proving.program_tools", "drivers.hal", "drivers.grblhal.grblhal_table"),
     *("core.interpreter.omniturn.flow.loops_and_subroutines", "core.part.solid_picture"),
     *("core.proving.part_proof", "drivers.canopen.canopen_machine", "drivers.driver_host"),

@@ -6,13 +6,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from app.desk.status import formats
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
-from core.interpreter.shared.working_plane import Swivel
 from core.message import Message, join_messages
 from core.ports import Unknown
+
+if TYPE_CHECKING:
+    from core.interpreter.shared.working_plane import Swivel
 
 # --- lamps --------------------------------------------------------------------------------------------
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import hypot, inf
+from typing import TYPE_CHECKING
 
-from core.geometry.rotary_axes import Kinematics
 from core.geometry.rotation_frames import Vector, plus, scaled
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
@@ -41,6 +41,9 @@ from core.interpreter.shared.actions import (
 from core.interpreter.shared.checkpoint import ApproachStep, AxesLeg, Begin, CTurn, FunctionStep, Leg
 from core.interpreter.shared.modal_state import Modal
 from core.message import Message
+
+if TYPE_CHECKING:
+    from core.geometry.rotary_axes import Kinematics
 
 _SAME = 1e-6  # mm
 _TURN = 360.0

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from core.geometry.rotary_axes import Kinematics, Place
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector
+
+if TYPE_CHECKING:
+    from core.geometry.rotary_axes import Kinematics, Place
 
 Corners = tuple[Vector, Vector]
 Angles = tuple[float | None, float | None, float | None]
