@@ -1,2 +1,2 @@
 VERSION = "0.1.0"
-"""That of pyproject.toml: to ask the installed package for it takes longer than all else that prints it."""
+"""Version by Semantic Versioning, stated only here. The build reads it from this file (pyproject.toml)."""

@@ -21,8 +21,9 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from app import VERSION
 from resources.setup.licences import PAGE, LicenceError
-from resources.setup.lock import HERE, HOUSE, PYTHONS, locked_file, project
+from resources.setup.lock import HERE, HOUSE, PYTHONS, locked_file
 from resources.setup.sbom import Component, file_of_the_system, sbom
 
 GLIBC = {"x86_64": 34, "aarch64": 39}
@@ -47,14 +48,14 @@ def run(*words: object, cwd: Path = HOUSE) -> str:
 
 def version() -> str:
     """What is in the bundle: the version, and the commit with its date where it is known."""
-    stated = str(project()["project"]["version"])
     try:
         day = run("git", "show", "--no-patch", "--format=%cd", "--date=format:%Y%m%d", "HEAD").strip()
         return (
-            f"{stated}-{day}-" + run("git", "describe", "--always", "--dirty=-changed", "--exclude=*").strip()
+            f"{VERSION}-{day}-"
+            + run("git", "describe", "--always", "--dirty=-changed", "--exclude=*").strip()
         )
     except (BundleError, OSError):
-        return stated
+        return VERSION
 
 
 def platforms(machine: str) -> Iterator[str]:
