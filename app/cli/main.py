@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from types import ModuleType
 
 from app import VERSION
+from app.cli.bug_report.crash_report import keep_interrupts, raise_interrupt, report_crash, report_thread
 from app.cli.command_parser import (
     Parser,
     Subcommands,
@@ -26,7 +27,6 @@ from app.cli.command_parser import (
     with_demo_first,
     with_program_option,
 )
-from app.cli.crash_report import keep_interrupts, raise_interrupt, report_crash, report_thread
 from app.compose.extra import Subcommand, command_modules, extras, insert_after
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
@@ -45,6 +45,7 @@ COMMANDS: Mapping[str, str] = {
     "alarms": "list all alarms with number, meaning, causes and remedies",
     "scope": "show scope data from a saved record or from the last few minutes",
     "setup": "copy a machine's setup, add a desktop entry, or print a shell completion script",
+    "report-bug": "collect data for a fault report, without names, paths and addresses",
     "where": "list the folders and files that TurnDesk uses",
     "help": "explain a command and its options",
 }
@@ -80,7 +81,9 @@ def _help_of(command: str) -> str:
 def _module_of(command: str) -> ModuleType:
     """Import the module of a subcommand."""
     own = command in COMMANDS
-    return importlib.import_module(f"app.cli.{command}_command" if own else command_modules()[command])
+    return importlib.import_module(
+        f"app.cli.{command.replace('-', '_')}_command" if own else command_modules()[command]
+    )
 
 
 def build_parser(commands: Sequence[str] | None = None, *, bare: bool = False) -> argparse.ArgumentParser:

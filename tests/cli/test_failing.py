@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.crash_report import report_crash, report_thread
+from app.cli.bug_report.crash_report import report_crash, report_thread
 from app.cli.main import main
 from app.compose.runs import error_log
 from app.compose.runs.error_log import Log

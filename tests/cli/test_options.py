@@ -81,6 +81,7 @@ COVERED = {
     ("trace", "--out"): "tests/cli/test_trace.py",
     **{("run", option): "tests/cli/test_run_part.py"
        for option in ("--stock", "--tools", "--stick-out", "--keep-stock")},
+    **{("report-bug", option): "tests/cli/test_report_bug.py" for option in ("--machine", "--out", "--yes")},
     ("run", "--anew"): "tests/cli/test_run.py",
     ("run", "--headless"): "tests/cli/test_run.py",
     ("run", "--realtime"): "tests/cli/test_run.py",

@@ -252,7 +252,7 @@ class _Run:
                 "TurnDesk is not installed on the dask worker ({error}); install TurnDesk there",
                 error=error,
             )
-        from app.cli.crash_report import keep_crash
+        from app.cli.bug_report.crash_report import keep_crash
 
         where = keep_crash(type(error), error, error.__traceback__)
         what = str(error).splitlines()[0] if str(error) else type(error).__name__

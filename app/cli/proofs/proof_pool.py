@@ -13,7 +13,7 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from typing import Generic, Protocol, TypeVar
 
-from app.cli.crash_report import raise_interrupt
+from app.cli.bug_report.crash_report import raise_interrupt
 
 Unit = TypeVar("Unit")
 Made = TypeVar("Made")

@@ -124,11 +124,16 @@ def remember_machine(machine_file: str | None, persistence: Persistence) -> None
         persistence.save_setting(_KEY, place)
 
 
+def machine_file_in_use(settings: Settings) -> str | None:
+    """Return the path of the machine file in use, or the name of a shipped one, or None."""
+    place = settings.read_setting(_KEY)
+    return place if isinstance(place, str) else None
+
+
 def machine_in_use(settings: Settings) -> Machine:
     """Return the machine in use. Raises CommandError if its file cannot be read."""
-    place = settings.read_setting(_KEY)
     try:
-        return read_machine(place if isinstance(place, str) else None)
+        return read_machine(machine_file_in_use(settings))
     except CommandError as error:
         raise CommandError(
             Message("the travel of the current machine is unknown: {error}. Use --machine FILE", error=error),

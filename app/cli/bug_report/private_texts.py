@@ -1,0 +1,91 @@
+"""Programs, machine files and logs without the texts in them that may be private."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Collection, Iterator
+
+from app.cli.bug_report.replaced_names import Replacements
+from core.message import Message
+
+_COMMENTS = re.compile(
+    r"(?:\([^()\n]*\)?|;[^\n]*|\"[^\"\n]*\"?)"
+    r"|(?m:^(?P<name>\s*(?:\d+\s+)?(?:BEGIN PGM|END PGM|CALL PGM|\*\s*-|%)\s*))"
+    r"[^\n]*?(?=(?:\s+(?:MM|INCH))?\s*$)",
+    re.IGNORECASE | re.MULTILINE,
+)
+"""Comments, strings, structure lines and program names of the three languages."""
+_STRING = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'')
+_TABLE = re.compile(r"^\s*\[\[?\s*([\w.\"'-]+)")
+_TERMINAL = re.compile(r"[A-Za-z_:-]{0,8}\d[\w.:-]{0,8}")
+_NETWORK = ("sharing", "announce", "status_page", "mtconnect", "office", "http", "mqtt")
+"""Tables of the machine file in which every string may name a computer, a person or a folder."""
+
+
+def program_without_comments(text: str) -> str:
+    """Return a program whose comments, strings and names have ``x`` for each letter; their places remain."""
+
+    def hidden(found: re.Match[str]) -> str:
+        start = found["name"] or ""
+        return start + re.sub(r"\w", "x", found[0][len(start) :])
+
+    return _COMMENTS.sub(hidden, text)
+
+
+def machine_without_names(text: str, known: Collection[str], replacements: Replacements) -> str:
+    """Return the text of a machine file without comments and without private strings.
+
+    A string remains if it is one of ``known`` (the strings of the shipped machine files), or if it has the
+    form of a terminal outside of the network's tables. The text does not need to be valid TOML.
+    """
+    lines, table = [], ""
+    for line in text.splitlines():
+        if found := _TABLE.match(line):
+            table = found[1].strip("\"'")
+        is_network = table.partition(".")[0] in _NETWORK
+
+        def replaced(match: re.Match[str], is_network: bool = is_network) -> str:
+            value = match[0][1:-1]
+            if value in known or (not is_network and _TERMINAL.fullmatch(value)):
+                return match[0]
+            return f'"{replacements.placeholder("TEXT", value)}"'
+
+        lines.append("".join(_parts(line, replaced)))
+    return "\n".join(lines)
+
+
+def _parts(line: str, replaced: Callable[[re.Match[str]], str]) -> Iterator[str]:
+    """Yield a line with its strings replaced; the line ends at its comment."""
+    end = 0
+    while True:
+        string, comment = _STRING.search(line, end), line.find("#", end)
+        if comment >= 0 and (string is None or comment < string.start()):
+            yield line[end:comment].rstrip()
+            return
+        if string is None:
+            rest = line[end:]
+            open_mark = min((at for mark in "\"'" if (at := rest.find(mark)) >= 0), default=-1)
+            yield rest if open_mark < 0 else rest[:open_mark] + '"TEXT'
+            return
+        yield line[end : string.start()]
+        yield replaced(string)
+        end = string.end()
+
+
+def event_line(line: str) -> str:
+    """Return a line of a run's event log without the name of its scope record."""
+    try:
+        event = json.loads(line)
+        event.pop("record", None)
+    except (ValueError, AttributeError, TypeError):
+        return line
+    return json.dumps(event, ensure_ascii=False)
+
+
+def text_of_event(text: str) -> str:
+    """Return the template of a message with its numbers, without its names; a plain text as it is."""
+    if not isinstance(text, Message):
+        return text
+    numbers = {name: each for name, each in text.values.items() if isinstance(each, int | float)}
+    return f"{text.template} {numbers}" if numbers else text.template

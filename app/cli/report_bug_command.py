@@ -1,0 +1,59 @@
+"""The command ``turndesk report-bug``: a text for a fault report, without names, paths and addresses."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import EXIT_OK, CommandError, cannot_write
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+
+OUT = "turndesk-report.txt"
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Add the parser of the command."""
+    parser = subparsers.add_parser("report-bug")
+    parser.add_argument(
+        "file", nargs="?", metavar="FILE", help="program to include (default: the one that was started last)"
+    )
+    parser.add_argument("--machine", metavar="FILE", help="machine file to include (default: the one in use)")
+    parser.add_argument("--out", metavar="FILE", default=OUT, help=f"file to write (default: {OUT})")
+    parser.add_argument("--yes", action="store_true", help="write the file without asking")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print the report, ask, and write it to a new file. Raises CommandError."""
+    from app.cli.bug_report.bug_report import bug_report
+
+    target = Path(args.out)
+    if target.exists():
+        raise CommandError(
+            Message("{file} exists already; name another file with --out", file=target), "file-exists"
+        )
+    text = bug_report(args.machine, Path(args.file) if args.file else None)
+    sys.stdout.write(text)
+    if not args.yes and not _is_confirmed(target):
+        sys.stdout.write("nothing was written\n")
+        return EXIT_OK
+    try:
+        number = os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with open(number, "w", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise cannot_write(target, error) from error
+    sys.stdout.write(f"written: {target}\n")
+    return EXIT_OK
+
+
+def _is_confirmed(target: Path) -> bool:
+    """Return whether the user agrees to write the text that was shown."""
+    sys.stdout.write(f"\nRead the text above. Write it to {target}? [y/N] ")
+    sys.stdout.flush()
+    return sys.stdin.readline().strip().lower() in {"y", "yes"}
