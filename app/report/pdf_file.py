@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from enum import StrEnum
@@ -10,6 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from core.message import Message
+from core.own_process import module_environment
 
 _LONGEST = 120.0  # seconds
 
@@ -29,7 +29,7 @@ def pdf_of(html: str, title: str, paper: Paper) -> bytes:
     with TemporaryDirectory(prefix="turndesk-") as folder:
         path = Path(folder) / "sheet.pdf"
         command = [sys.executable, "-m", "app.screen.pdf_pages", str(path), title, paper.value]
-        around = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
+        around = module_environment(QT_QPA_PLATFORM="offscreen")
         try:
             done = subprocess.run(
                 command, input=html.encode(), capture_output=True, timeout=_LONGEST, check=False, env=around

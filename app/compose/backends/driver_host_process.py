@@ -16,6 +16,7 @@ from app.compose.backends.backend_entry import NO_PRIORITY, backend_of, has_inve
 from app.compose.backends.inverter_backend import with_inverter
 from core.machine.machine_model import Machine
 from core.message import Message as Text
+from core.own_process import module_environment
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_nodes import CYCLIC, EVENED_OUT
 from drivers.canopen.canopen_table import CanopenTable
@@ -90,6 +91,7 @@ class DriverHostProcess:
             # properly.
             self.process = subprocess.Popen(
                 command,
+                env=module_environment(),
                 stdin=subprocess.PIPE,
                 pass_fds=(theirs.fileno(), self._bell.far.fileno(), *self._held),
                 start_new_session=True,

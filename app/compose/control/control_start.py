@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from core.machine.machine_model import Machine
+from core.own_process import module_environment
 
 _PATH_LENGTH = 100  # =
 # names of the places of controls in a data folder; see control_place.py
@@ -64,6 +65,7 @@ def start_control(machine: Machine, folder: Path, zero: float | None = None) -> 
         # A separate session, so that Ctrl-C reaches only the screen, which then ends the control properly.
         process = subprocess.Popen(
             command,
+            env=module_environment(),
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             pass_fds=(theirs.fileno(),),

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from app.desk.stop_keys.stop_records import LONGEST, NOWHERE, Focus, Stop
+from core.own_process import module_environment
 
 OpenLine = Callable[[], socket.socket | None]
 """Open a line to the control for stops; None where the control has none."""
@@ -27,6 +28,7 @@ class WatchedKeys:
             files = (line.fileno(), theirs.fileno())
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "app.desk.stop_keys.key_watcher", *map(str, files)],
+                env=module_environment(),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 pass_fds=files,

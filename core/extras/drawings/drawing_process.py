@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -14,9 +13,9 @@ from pathlib import Path
 from core.extras.drawings.drawing import Drawing, DrawingError, drawing_of
 from core.input_file import failures_as
 from core.message import Message
+from core.own_process import module_environment
 
 _CHILD = "core.extras.drawings.drawing_child"
-_ROOT = Path(__file__).parents[3]
 _LOOK = 0.1  # s between two checks whether the drawing is still needed
 
 GoOn = Callable[[float], None]
@@ -45,8 +44,8 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
     words = [str(path.absolute()), str(limits.memory), str(limits.processor)]
     try:
         process = subprocess.Popen(
-            [sys.executable, "-P", "-m", _CHILD, *words],
-            env=_environment(),
+            [sys.executable, "-P", "-m", _CHILD, *words],  # -P: the current folder is not trusted
+            env=module_environment(OPENBLAS_NUM_THREADS="1"),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -73,15 +72,6 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
         raise _ended(path, process.returncode, limits)
     with failures_as(lambda _error: _ended(path, 1, limits)):
         return drawing_of(data)
-
-
-def _environment() -> dict[str, str]:
-    """Return the environment with this TurnDesk's folder in the module path.
-
-    The current folder is not trusted (``-P``).
-    """
-    paths = [str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}
 
 
 def _all_of(process: subprocess.Popen[bytes]) -> bytes | None:

@@ -1,0 +1,46 @@
+"""Build of TurnDesk's wheel: the packages of the source code become parts of one package ``turndesk``.
+
+Setuptools builds the wheel, and this backend then moves its packages. Editable installs and source
+distributions are those of setuptools, so that the names of the source code remain as they are in a clone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from setuptools import build_meta
+from setuptools.build_meta import (
+    build_editable,
+    build_sdist,
+    get_requires_for_build_editable,
+    get_requires_for_build_sdist,
+    get_requires_for_build_wheel,
+    prepare_metadata_for_build_editable,
+)
+
+from resources.setup.one_package import in_one_package
+
+__all__ = [
+    "build_editable",
+    "build_sdist",
+    "build_wheel",
+    "get_requires_for_build_editable",
+    "get_requires_for_build_sdist",
+    "get_requires_for_build_wheel",
+    "prepare_metadata_for_build_editable",
+]
+
+
+def build_wheel(
+    wheel_directory: str,
+    config_settings: Mapping[str, Any] | None = None,
+    metadata_directory: str | None = None,
+) -> str:
+    """Build the wheel in a folder, and return its name."""
+    settings = dict(config_settings) if config_settings else None
+    name = str(build_meta.build_wheel(wheel_directory, settings, metadata_directory))
+    path = Path(wheel_directory) / name
+    path.write_bytes(in_one_package(path.read_bytes()))
+    return name

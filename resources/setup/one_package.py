@@ -1,0 +1,73 @@
+"""A wheel whose packages are parts of one package ``turndesk``.
+
+The wheel has the same bytes whenever ``SOURCE_DATE_EPOCH`` and the source are the same.
+"""
+
+from __future__ import annotations
+
+import base64
+import csv
+import hashlib
+import io
+import os
+import time
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+PACKAGES = ("app", "core", "drivers", "resources")
+NAME = "turndesk"
+_LAUNCHER = Path(__file__).with_name("launcher.py")
+_ENTRY_POINTS = f"[console_scripts]\n{NAME} = {NAME}:console\n"
+_MAIN = f"import sys\n\nfrom {NAME} import console\n\nsys.exit(console())\n"
+_EARLIEST = 315532800  # s since 1970, the first time that an archive can state
+_MODE = 0o100644
+
+
+def in_one_package(wheel: bytes) -> bytes:
+    """Return a wheel whose packages are parts of ``turndesk``, with its files in order and of one time."""
+    with zipfile.ZipFile(io.BytesIO(wheel)) as archive:
+        files = {moved(name): archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+    record = next(name for name in files if name.endswith(".dist-info/RECORD"))
+    info = record.removesuffix("RECORD")
+    del files[record]
+    files[f"{info}entry_points.txt"] = _ENTRY_POINTS.encode()
+    files[f"{info}top_level.txt"] = f"{NAME}\n".encode()
+    files[f"{NAME}/__init__.py"] = _LAUNCHER.read_bytes()
+    files[f"{NAME}/__main__.py"] = _MAIN.encode()
+    files[record] = _record(files, record)
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in sorted(files, key=lambda each: (each == record, each)):
+            entry = zipfile.ZipInfo(name, _time())
+            entry.external_attr = _MODE << 16
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, files[name])
+    return made.getvalue()
+
+
+def moved(name: str) -> str:
+    """Return the place of a file in the wheel. Raises ValueError for a file of an unknown package."""
+    top = name.partition("/")[0]
+    if top in PACKAGES:
+        return f"{NAME}/{name}"
+    if top.endswith(".dist-info"):
+        return name
+    raise ValueError(f"{name}: this file belongs to no package of TurnDesk")
+
+
+def _time() -> tuple[int, int, int, int, int, int]:
+    stated = max(int(os.environ.get("SOURCE_DATE_EPOCH", "0")), _EARLIEST)
+    at = time.gmtime(stated)
+    return at.tm_year, at.tm_mon, at.tm_mday, at.tm_hour, at.tm_min, at.tm_sec
+
+
+def _record(files: Mapping[str, bytes], record: str) -> bytes:
+    """Return the list of the wheel's files with hash and size."""
+    made = io.StringIO()
+    rows = csv.writer(made, lineterminator="\n")
+    for name in sorted(files):
+        digest = base64.urlsafe_b64encode(hashlib.sha256(files[name]).digest()).rstrip(b"=").decode()
+        rows.writerow((name, f"sha256={digest}", len(files[name])))
+    rows.writerow((record, "", ""))
+    return made.getvalue().encode()

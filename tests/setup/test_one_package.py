@@ -1,0 +1,147 @@
+"""The wheel has one package, the same bytes each time, and a command that finds the packages inside."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import io
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from core.own_process import module_environment
+from resources.setup import one_package
+from resources.setup.lock import HOUSE
+from resources.setup.one_package import PACKAGES, in_one_package, moved
+
+INFO = "turndesk-1.2.dist-info/"
+FILES = {
+    "core/x.py": "X = 1\n",
+    "app/__init__.py": "",
+    f"{INFO}METADATA": "Name: turndesk\n",
+    f"{INFO}RECORD": "old",
+}
+
+
+def wheel(files: dict[str, str]) -> bytes:
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w") as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return made.getvalue()
+
+
+def names(data: bytes) -> list[str]:
+    return zipfile.ZipFile(io.BytesIO(data)).namelist()
+
+
+def test_the_packages_are_inside_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = in_one_package(wheel(FILES))
+    assert {name.partition("/")[0] for name in names(made)} == {"turndesk", INFO[:-1]}
+    assert {"turndesk/core/x.py", "turndesk/app/__init__.py", "turndesk/__main__.py"} <= set(names(made))
+    assert names(made)[-1] == f"{INFO}RECORD"
+
+
+def test_the_record_has_the_hash_of_every_file() -> None:
+    with zipfile.ZipFile(io.BytesIO(in_one_package(wheel(FILES)))) as archive:
+        rows = [line.split(",") for line in archive.read(f"{INFO}RECORD").decode().splitlines()]
+        assert {row[0] for row in rows} == set(archive.namelist())
+        for name, digest, size in rows[:-1]:
+            data = archive.read(name)
+            wanted = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            assert (digest, int(size)) == (f"sha256={wanted}", len(data))
+    assert rows[-1] == [f"{INFO}RECORD", "", ""]
+
+
+def test_the_order_of_the_files_changes_nothing_and_the_stated_time_does(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    backwards = dict(reversed(FILES.items()))
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
+    made = in_one_package(wheel(FILES))
+    assert in_one_package(wheel(backwards)) == made
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000100")
+    assert in_one_package(wheel(FILES)) != made
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    with zipfile.ZipFile(io.BytesIO(in_one_package(wheel(FILES)))) as archive:
+        assert {each.date_time[0] for each in archive.infolist()} == {1980}
+
+
+@pytest.mark.parametrize(
+    "name", ["tests/x.py", "setup.py", "turndesk/x.py", "apps/x.py", "x-1.data/scripts/x"]
+)
+def test_a_file_of_another_package_is_rejected(name: str) -> None:
+    with pytest.raises(ValueError, match="no package"):
+        moved(name)
+    with pytest.raises(ValueError, match="no package"):
+        in_one_package(wheel(FILES | {name: ""}))
+
+
+def test_a_wheel_without_a_record_is_rejected() -> None:
+    with pytest.raises(StopIteration):
+        in_one_package(wheel({"app/x.py": ""}))
+
+
+@pytest.fixture
+def installed(tmp_path: Path) -> Path:
+    """An installed turndesk whose command prints where its packages are, and another program's app."""
+    main = "from app.cli import other\ndef console() -> int:\n    print(other.__file__)\n    return 3\n"
+    files = FILES | {"app/cli/__init__.py": "", "app/cli/main.py": main, "app/cli/other.py": ""}
+    with zipfile.ZipFile(io.BytesIO(in_one_package(wheel(files)))) as archive:
+        archive.extractall(tmp_path)
+    (tmp_path / "app").mkdir()
+    (tmp_path / "app" / "__init__.py").write_text("NAME = 'another program'\n")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "start", [("-m", "turndesk"), ("-c", "import sys, turndesk; sys.exit(turndesk.console())")]
+)
+def test_the_command_uses_its_own_packages(installed: Path, start: tuple[str, str]) -> None:
+    done = subprocess.run(
+        [sys.executable, "-S", *start], cwd=installed, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout.strip()) == (3, str(installed / "turndesk/app/cli/other.py")), (
+        done.stderr
+    )
+
+
+def test_another_program_does_not_find_them(installed: Path) -> None:
+    code = "import turndesk, app; print(app.NAME); import core"
+    done = subprocess.run(
+        [sys.executable, "-S", "-c", code], cwd=installed, capture_output=True, text=True, check=False
+    )
+    assert done.stdout == "another program\n"
+    assert "No module named 'core'" in done.stderr
+
+
+def test_every_process_of_turndesk_finds_its_modules() -> None:
+    """A file that starts ``python -m`` of a module of TurnDesk gives it the environment for that."""
+    starting = {
+        str(path.relative_to(HOUSE))
+        for package in ("app", "core", "drivers")
+        for path in (HOUSE / package).rglob("*.py")
+        if "sys.executable" in (text := path.read_text(encoding="utf-8")) and '"-m"' in text
+    }
+    without = [
+        name for name in starting if "module_environment(" not in (HOUSE / name).read_text(encoding="utf-8")
+    ]
+    assert len(starting) >= 4
+    assert without == []
+
+
+def test_the_environment_names_the_folder_of_the_packages_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", "/elsewhere")
+    assert module_environment(X="1")["PYTHONPATH"].split(":")[0] == str(HOUSE)
+    assert module_environment(X="1")["PYTHONPATH"].split(":")[1:] == ["/elsewhere"]
+    assert module_environment(X="1")["X"] == "1"
+    monkeypatch.delenv("PYTHONPATH")
+    assert module_environment()["PYTHONPATH"] == str(HOUSE)
+
+
+def test_the_packages_are_those_of_the_source_code() -> None:
+    assert [name for name in PACKAGES if not (HOUSE / name / "__init__.py").is_file()] == []
+    assert one_package._LAUNCHER.is_file()
