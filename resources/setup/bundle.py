@@ -24,6 +24,7 @@ from pathlib import Path
 from app import VERSION
 from resources.setup.licences import PAGE, LicenceError
 from resources.setup.lock import HERE, HOUSE, PYTHONS, locked_file
+from resources.setup.packages.same_bytes import owned_by_root
 from resources.setup.sbom import Component, file_of_the_system, sbom
 
 GLIBC = {"x86_64": 34, "aarch64": 39}
@@ -126,11 +127,14 @@ def release_name() -> str:
     return found["ID"] + found.get("VERSION_ID", found.get("VERSION_CODENAME", ""))
 
 
-def gather(folder: Path, machine: str, *, system_packages: bool) -> None:
-    """Put all that the bundle holds into a folder."""
-    wheels = folder / "wheels"
-    wheels.mkdir()
-    fetch_wheels(wheels, machine)
+def gather(folder: Path, machine: str, *, system_packages: bool, wheels: Path | None = None) -> None:
+    """Put the contents of the bundle into a folder; ``wheels`` are packages that are fetched already."""
+    fetched, wheels = wheels, folder / "wheels"
+    if fetched:
+        shutil.copytree(fetched, wheels)
+    else:
+        wheels.mkdir()
+        fetch_wheels(wheels, machine)
     build_product(folder)
     system = fetch_system_packages(folder / "debs") if system_packages else []
     shutil.copytree(
@@ -156,7 +160,7 @@ def pack(folder: Path, target: Path, machine: str) -> None:
     """One file that unpacks itself: a script, and behind it everything, held by its SHA-256."""
     with tempfile.TemporaryFile() as packed:
         with tarfile.open(fileobj=packed, mode="w") as archive:
-            archive.add(folder, arcname=".", filter=_nobodys)
+            archive.add(folder, arcname=".", filter=owned_by_root)
         packed.seek(0)
         digest = hashlib.file_digest(packed, "sha256").hexdigest()
         megabytes = packed.seek(0, 2) // 1_000_000 + 1
@@ -173,12 +177,6 @@ def _script(words: dict[str, str]) -> bytes:
     """The script in front, with what it has to know; where the packed part starts has four digits."""
     text = (HERE / "unpack.sh").read_text(encoding="utf-8")
     return re.sub("@([A-Z0-9]+)@", lambda found: words[found[1]], text).encode()
-
-
-def _nobodys(member: tarfile.TarInfo) -> tarfile.TarInfo:
-    member.uid = member.gid = 0
-    member.uname = member.gname = "root"
-    return member
 
 
 def main(argv: list[str]) -> int:

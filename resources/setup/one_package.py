@@ -19,7 +19,7 @@ PACKAGES = ("app", "core", "drivers", "resources")
 NAME = "turndesk"
 _LAUNCHER = Path(__file__).with_name("launcher.py")
 _ENTRY_POINTS = f"[console_scripts]\n{NAME} = {NAME}:console\n"
-_MAIN = f"import sys\n\nfrom {NAME} import console\n\nsys.exit(console())\n"
+_MAIN = f'import sys\n\nfrom {NAME} import console\n\nif __name__ == "__main__":\n    sys.exit(console())\n'
 _EARLIEST = 315532800  # s since 1970, the first time that an archive can state
 _MODE = 0o100644
 

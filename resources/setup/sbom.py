@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import uuid
 from collections.abc import Iterable
 from datetime import UTC, datetime
@@ -36,9 +37,9 @@ def sbom(version: str, wheels: Iterable[Path], system: Iterable[Component] = ())
     depends = [{"ref": _ROOT, "dependsOn": sorted(asked | {each["bom-ref"] for each in others})}]
     depends += [{"ref": name, "dependsOn": needed} for name, needed in needs.items()]
     document: dict[str, Any] = {"bomFormat": "CycloneDX", "specVersion": "1.6", "version": 1}
-    document["serialNumber"] = f"urn:uuid:{uuid.uuid4()}"
+    document["serialNumber"] = f"urn:uuid:{uuid.uuid5(uuid.NAMESPACE_URL, f'{_ROOT}@{version}')}"
     document["metadata"] = {
-        "timestamp": datetime.now(UTC).isoformat(timespec="seconds"),
+        "timestamp": _now().isoformat(timespec="seconds"),
         "component": product | {"licenses": [{"license": {"id": "MIT"}}]},
     }
     document["components"] = packages + others
@@ -92,6 +93,12 @@ def _needs(name: str) -> set[str]:
         for each in wanted
         if each.marker is None or any(each.marker.evaluate(place) for place in places)
     }
+
+
+def _now() -> datetime:
+    """Return the stated time of a build that can be repeated, or the present time."""
+    stated = os.environ.get("SOURCE_DATE_EPOCH", "")
+    return datetime.fromtimestamp(int(stated), UTC) if stated else datetime.now(UTC)
 
 
 def _files(wheels: Iterable[Path]) -> dict[str, list[Path]]:

@@ -1,0 +1,51 @@
+"""The folder with TurnDesk and all its Python packages, for one version of Python; it can be moved.
+
+The folder has the form of a virtual environment: ``bin/python`` leads to the Python of the system.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+from resources.setup.bundle import platforms, run
+from resources.setup.licences import PAGE
+from resources.setup.lock import HERE, HOUSE, locked_file
+
+DEBIAN = HERE / "debian"
+_NEEDLESS = ("bin", "share/man", "share/doc")
+"""Parts of the packages that TurnDesk does not use: their commands and manual pages."""
+
+
+def make_environment_folder(folder: Path, wheel: Path, python: str, machine: str, wheels: Path) -> None:
+    """Fill a folder for a Python version such as ``3.11``. ``wheels`` are all wheels of the desk.
+
+    Raises BundleError if a package cannot be installed.
+    """
+    packages = folder / "lib" / f"python{python}" / "site-packages"
+    packages.mkdir(parents=True)
+    words = ["--quiet", "--disable-pip-version-check", "--no-index", f"--find-links={wheels}", "--no-compile"]
+    words += ["--no-deps", "--only-binary=:all:", f"--python-version={python}", *platforms(machine)]
+    words += ["--implementation=cp", f"--target={packages}", "--no-warn-conflicts"]
+    run(sys.executable, "-m", "pip", "install", *words, "--require-hashes", "-r", locked_file("desk"))
+    run(sys.executable, "-m", "pip", "install", *words, wheel)
+    for name in _NEEDLESS:
+        shutil.rmtree(packages / name, ignore_errors=True)
+    _without_traces(packages)
+    commands = folder / "bin"
+    commands.mkdir()
+    (commands / "python").symlink_to(f"/usr/bin/python{python}")
+    (commands / "turndesk").write_bytes((DEBIAN / "turndesk").read_bytes())
+    (commands / "turndesk").chmod(0o755)
+    (folder / "pyvenv.cfg").write_text(f"home = /usr/bin\nversion = {python}\n", encoding="utf-8")
+    (folder / "licences").mkdir()
+    shutil.copy(HOUSE / "LICENSE", folder / "licences" / "TurnDesk")
+    shutil.copy(PAGE, folder / "licences.md")
+
+
+def _without_traces(packages: Path) -> None:
+    """Delete what pip writes about this computer and this minute."""
+    for info in packages.glob("*.dist-info"):
+        for name in ("direct_url.json", "INSTALLER", "REQUESTED", "RECORD"):
+            (info / name).unlink(missing_ok=True)

@@ -1,0 +1,82 @@
+"""The manual page ``turndesk(1)``, written from the parser of the command line."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import time
+from collections.abc import Iterator
+
+from app import VERSION
+from app.cli.main import build_parser
+from resources.setup.packages.same_bytes import epoch
+
+
+def manual_page() -> str:
+    """Return the page in the format of ``man``."""
+    parser = build_parser()
+    day = time.strftime("%Y-%m-%d", time.gmtime(epoch()))
+    return "\n".join(
+        [
+            f'.TH TURNDESK 1 "{day}" "turndesk {VERSION}" "User Commands"',
+            ".SH NAME",
+            r"turndesk \- operator screen and motion control for OmniTurn-style CNC lathes",
+            ".SH SYNOPSIS",
+            r".B turndesk",
+            r"[\fIOPTION\fR]... [\fICOMMAND\fR [\fIARGUMENT\fR]...]",
+            ".SH DESCRIPTION",
+            escaped(parser.description or ""),
+            r"TurnDesk has not yet driven a real machine.",
+            ".SH OPTIONS",
+            *_options(parser),
+            ".SH COMMANDS",
+            *_commands(parser, "turndesk"),
+            ".SH EXIT STATUS",
+            "0 if successful, 1 if the program has errors, 2 for a usage error.",
+            ".SH ENVIRONMENT",
+            ".TP",
+            r"\fBTURNDESK_HOME\fR",
+            "folder of the store, logs and settings",
+            ".SH FILES",
+            ".TP",
+            r"\fI~/.local/share/turndesk\fR",
+            "the data folder, if TURNDESK_HOME is not set; it remains when TurnDesk is removed",
+            "",
+        ]
+    )
+
+
+def _commands(parser: argparse.ArgumentParser, name: str) -> Iterator[str]:
+    """Yield the commands of a parser, and those below them."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            helps = {each.dest: each.help or "" for each in action._choices_actions}
+            for word, below in action.choices.items():
+                yield f".SS {escaped(f'{name} {word}')}"
+                yield escaped(helps.get(word, ""))
+                yield from _options(below)
+                yield from _commands(below, f"{name} {word}")
+
+
+def _options(parser: argparse.ArgumentParser) -> Iterator[str]:
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction) or action.help == argparse.SUPPRESS:
+            continue
+        value = "" if action.nargs == 0 else _value_of(action)
+        names = ", ".join(rf"\fB{escaped(each)}\fR" for each in action.option_strings)
+        yield ".TP"
+        yield f"{names} {value}".strip()
+        yield escaped((action.help or "").replace("%(default)s", str(action.default)).replace("%%", "%"))
+
+
+def _value_of(action: argparse.Action) -> str:
+    name = action.metavar if isinstance(action.metavar, str) else action.dest.upper()
+    if action.choices and not isinstance(action.metavar, str):
+        name = "|".join(map(str, action.choices))
+    return rf"\fI{escaped(name)}\fR"
+
+
+def escaped(text: str) -> str:
+    """Return a text in which ``man`` finds no command and no special character."""
+    text = text.replace("\\", r"\e").replace("-", r"\-")
+    return re.sub(r"^(?=[.'])", r"\\&", text)

@@ -1,0 +1,146 @@
+"""Builds a release: ``python -m resources.setup.release FOLDER``, from a clean checkout of the last commit.
+
+The release consists of the wheel, the source distribution, the bundle for a computer without a network, a
+folder that can be moved, and Debian packages, with ``SHA256SUMS`` and the SBOM. Everything is built twice and
+compared byte for byte. A network is needed once, for the locked packages. ``dpkg-deb`` writes the Debian
+packages; it is part of every Debian and Ubuntu.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from resources.setup.bundle import GLIBC, BundleError, build_product, fetch_wheels, gather, pack, run, version
+from resources.setup.licences import LicenceError
+from resources.setup.lock import HOUSE
+from resources.setup.packages.debian_package import TARGETS, write_debian_package
+from resources.setup.packages.environment_folder import make_environment_folder
+from resources.setup.packages.same_bytes import repack_tar_gz, set_times, write_tar_gz
+from resources.setup.sbom import sbom
+
+SUMS = "SHA256SUMS"
+
+
+def build(folder: Path, wheels: Path, machine: str, targets: Sequence[str]) -> None:
+    """Build everything from the checkout in which this module is. Raises BundleError or LicenceError."""
+    build_product(folder)
+    wheel = next(folder.glob("turndesk-*.whl"))
+    _write_source_distribution(folder)
+    with tempfile.TemporaryDirectory() as work:
+        gathered = Path(work) / "gathered"
+        gathered.mkdir()
+        gather(gathered, machine, system_packages=False, wheels=wheels)
+        pack(gathered, folder / f"turndesk-{version()}-linux-{machine}.run", machine)
+    for name in targets:
+        target = TARGETS[name]
+        with tempfile.TemporaryDirectory() as work:
+            environment = Path(work) / "environment"
+            make_environment_folder(environment, wheel, target.python, machine, wheels)
+            set_times(environment)
+            stem = f"turndesk-{version()}-linux-{machine}-python{target.python}"
+            write_tar_gz(environment, folder / f"{stem}.tar.gz", stem)
+            shutil.move(write_debian_package(environment, version(), target, machine, Path(work)), folder)
+    document = sbom(version(), [*wheels.glob("*.whl")])
+    (folder / "sbom.cdx.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
+
+
+def _write_source_distribution(folder: Path) -> None:
+    code = "import sys; from setuptools.build_meta import build_sdist; print(build_sdist(sys.argv[1]))"
+    name = run(sys.executable, "-c", code, folder).strip().splitlines()[-1]
+    repack_tar_gz(folder / name)
+    shutil.rmtree(HOUSE / "turndesk.egg-info", ignore_errors=True)
+
+
+def write_sums(folder: Path) -> None:
+    """Write the SHA-256 of every file, as ``sha256sum --check`` reads it."""
+    lines = []
+    for path in sorted(folder.iterdir()):
+        if path.name != SUMS:
+            with path.open("rb") as file:
+                lines.append(f"{hashlib.file_digest(file, 'sha256').hexdigest()}  {path.name}\n")
+    (folder / SUMS).write_text("".join(lines), encoding="utf-8")
+
+
+def differences(first: Path, second: Path) -> list[str]:
+    """Return the names of files that differ between two folders, or that only one of them has."""
+    names = {path.name for folder in (first, second) for path in folder.iterdir()}
+    return sorted(name for name in names if _bytes(first / name) != _bytes(second / name))
+
+
+def _bytes(path: Path) -> bytes | None:
+    return path.read_bytes() if path.exists() else None
+
+
+def release(folder: Path, machine: str, targets: Sequence[str]) -> None:
+    """Build twice from two clean checkouts, compare, and write the release to a new folder.
+
+    Raises BundleError if the two builds differ.
+    """
+    if folder.exists():
+        raise BundleError(f"{folder} exists already; name a new folder")
+    commit_time = run("git", "show", "--no-patch", "--format=%ct", "HEAD").strip()
+    with tempfile.TemporaryDirectory() as work:
+        wheels = Path(work) / "wheels"
+        wheels.mkdir()
+        fetch_wheels(wheels, machine)
+        made = []
+        for number in ("first", "second"):
+            checkout, out = Path(work) / number / "turndesk", Path(work) / f"{number}-release"
+            run("git", "clone", "--quiet", "--no-hardlinks", HOUSE, checkout)
+            run("git", "checkout", "--quiet", run("git", "rev-parse", "HEAD").strip(), cwd=checkout)
+            out.mkdir()
+            environment = {**os.environ, "SOURCE_DATE_EPOCH": commit_time, "PYTHONPATH": str(checkout)}
+            words = ["--build", out, "--wheels", wheels, "--machine", machine]
+            words += [word for name in targets for word in ("--for", name)]
+            command = [sys.executable, "-m", "resources.setup.release", *map(str, words)]
+            if subprocess.run(command, cwd=checkout, env=environment, check=False).returncode:
+                raise BundleError(f"the {number} build failed")
+            write_sums(out)
+            made.append(out)
+        if differ := differences(*made):
+            raise BundleError(f"two builds of the same commit differ: {', '.join(differ)}")
+        shutil.move(made[0], folder)
+
+
+def main(argv: Sequence[str]) -> int:
+    """Build the release."""
+    parser = argparse.ArgumentParser(prog="python -m resources.setup.release", description=__doc__)
+    parser.add_argument("folder", nargs="?", type=Path, help="new folder for the release")
+    parser.add_argument("--machine", choices=GLIBC, default=platform.machine())
+    parser.add_argument(
+        "--for",
+        dest="targets",
+        action="append",
+        choices=TARGETS,
+        help="release for a Debian package (default: all)",
+    )
+    parser.add_argument("--build", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--wheels", type=Path, help=argparse.SUPPRESS)
+    args = parser.parse_args(argv)
+    targets = args.targets or [name for name, each in TARGETS.items() if each.glibc >= GLIBC[args.machine]]
+    try:
+        if args.build:
+            build(args.build, args.wheels, args.machine, targets)
+        elif args.folder:
+            release(args.folder, args.machine, targets)
+            sys.stdout.write((args.folder / SUMS).read_text(encoding="utf-8"))
+        else:
+            parser.error("name the folder for the release")
+    except (BundleError, LicenceError, OSError) as error:
+        sys.stderr.write(f"No release: {error}\n")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
