@@ -101,7 +101,7 @@ class Parser(argparse.ArgumentParser):
                     )
                 )
             if isinstance(action, argparse._SubParsersAction) and os.path.splitext(str(value))[1]:
-                self.error(Message("{value}: there is no file and no command with this name", value=value))
+                self.error(Message("{value}: neither a file nor a command has this name", value=value))
             near = nearest(str(value), map(str, action.choices))
             if near:
                 raise argparse.ArgumentError(

@@ -82,6 +82,7 @@ for _each in of_extras("options"):
 
 READS = {
     "expand", "trace", "alarms", "parts", "shift", "scope", "offsets show", "offsets history",
+    "where", "help", "report-bug",
     "store verify", "access list", "access table", "jobs list", "share status", "share compare",
     "machine check", "machine hal", "serial ports", "serial send", "setup completion",
     "store upgrade",  # what the screen does when it starts

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tomllib
@@ -90,4 +91,6 @@ def test_a_command_or_a_mistake_needs_the_whole_parser(words: list[str]) -> None
 
 
 def test_the_version_is_that_of_the_package() -> None:
-    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"] == VERSION
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    assert declared["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "app.VERSION"}
+    assert re.fullmatch(r"\d+\.\d+\.\d+", VERSION)

@@ -337,6 +337,22 @@ measure | list | | Values that must be measured on the machine, as sentences.
 """
     ),
 )
+WHERE = Output(
+    "where --json",
+    "One object. A place may not exist yet.",
+    keys(
+        """
+data_folder | string | | Folder of all data of this user.
+store | string | | File of the store.
+programs | string | | Folder of the user's programs.
+logs | string | | Folder of the logs and crash files.
+backups | string | | Folder of the daily backups.
+scope_records | string | | Folder of the scope records.
+machine_file | string | | The machine file that is used.
+code | string | | Main file of the installed package.
+"""
+    ),
+)
 ALARMS = Output(
     "alarms [NUMBER…] --json",
     "A list with one object for each alarm.",
@@ -460,7 +476,7 @@ channels[].max | number or null | unit | Largest value; null if not available.
 )
 _OWN_OUTPUTS = (
     *(PROVE, EXPAND_OMNITURN, EXPAND_SINUMERIK, EXPAND_KLARTEXT, TRACE, RUN, MACHINE_CHECK, MACHINE_HAL),
-    *(ALARMS, OFFSETS_SHOW, OFFSETS_HISTORY, STORE_VERIFY, SCOPE),
+    *(ALARMS, WHERE, OFFSETS_SHOW, OFFSETS_HISTORY, STORE_VERIFY, SCOPE),
 )
 OUTPUTS = tuple(
     insert_after(
