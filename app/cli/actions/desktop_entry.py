@@ -71,11 +71,6 @@ def _quoted(word: str) -> str:
     return '"' + inside.replace("\\", "\\\\") + '"'  # values of a desktop entry have another level of escapes
 
 
-def menu_entry(command: str) -> str:
-    """Return the text of a menu entry that starts a command, which is already quoted."""
-    return _ENTRY.format(command=command)
-
-
 def install(*, autostart: bool) -> list[Path]:
     """Write the entries and return their paths. Raises CommandError if a file cannot be written."""
     entry, icon, types, start = _places()

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from app.cli.actions.desktop_entry import menu_entry
+from app.cli.actions.desktop_entry import entry_text
 from resources.setup.bundle import BundleError, run
 from resources.setup.licences import PAGE, rows
 from resources.setup.lock import HOUSE
@@ -83,7 +83,7 @@ def _shared_files(root: Path, version: str) -> None:
     """Write everything outside of ``/opt``."""
     command = _file(root / "usr/bin/turndesk")
     command.symlink_to(f"/opt/turndesk/{version}/bin/turndesk")
-    _write(root, "usr/share/applications/turndesk.desktop", menu_entry("/usr/bin/turndesk"))
+    _write(root, "usr/share/applications/turndesk.desktop", entry_text("/usr/bin/turndesk %f"))
     for name, place in (
         ("desktop/turndesk.svg", "usr/share/icons/hicolor/scalable/apps/turndesk.svg"),
         ("desktop/turndesk.xml", "usr/share/mime/packages/turndesk.xml"),

@@ -45,7 +45,9 @@ def make_environment_folder(folder: Path, wheel: Path, python: str, machine: str
 
 
 def _without_traces(packages: Path) -> None:
-    """Delete what pip writes about this computer and this minute."""
+    """Delete what pip writes about this computer and this minute, and compiled files."""
+    for compiled in [*packages.rglob("__pycache__")]:
+        shutil.rmtree(compiled)
     for info in packages.glob("*.dist-info"):
         for name in ("direct_url.json", "INSTALLER", "REQUESTED", "RECORD"):
             (info / name).unlink(missing_ok=True)

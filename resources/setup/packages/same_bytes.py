@@ -48,9 +48,18 @@ def repack_tar_gz(path: Path) -> None:
     path.write_bytes(made.getvalue())
 
 
+def _is_command(path: Path) -> bool:
+    """Return whether a file is a command: a script outside of the packages, or a program of Qt."""
+    is_package = "site-packages" in path.parts
+    return bool(path.stat().st_mode & 0o100) and (not is_package or path.parent.name == "libexec")
+
+
 def set_times(folder: Path) -> None:
-    """Give everything in a folder the time of the release, and rights that do not depend on the umask."""
+    """Give everything in a folder the time of the release, and rights that do not depend on the umask.
+
+    Of the files that can be executed, only commands remain so: libraries and modules are only read.
+    """
     for path in (folder, *folder.rglob("*")):
         if not path.is_symlink():
-            path.chmod(0o755 if path.is_dir() or path.stat().st_mode & 0o100 else 0o644)
+            path.chmod(0o755 if path.is_dir() or _is_command(path) else 0o644)
         os.utime(path, (epoch(), epoch()), follow_symlinks=False)

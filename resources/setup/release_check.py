@@ -1,0 +1,162 @@
+"""Tries a Debian package in a bare root: ``python -m resources.setup.release_check PACKAGE``, as root.
+
+The check makes a minimal root with ``debootstrap``, with the package sources of this computer. It installs an
+earlier version, upgrades, proves and runs a program, removes and purges, and compares the files before and
+after. ``lintian`` must find no error. The check needs ``debootstrap``, ``lintian`` and a network for Debian's
+packages, takes several minutes, and is not part of the test command.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from resources.setup.bundle import BundleError, run
+
+_EARLIER = "0.0.0"
+_MOUNTS = ("proc", "sys", "dev")
+_IGNORED = re.compile(r"^/(?:proc|sys|dev|run|tmp|root|var/(?:cache|log|lib/(?:apt|dpkg|systemd)))(?:/|$)")
+_PROGRAMS = "lib/python3*/site-packages/turndesk/resources/programs"
+_SAMPLES = f'samples=$(dirname "$(readlink -f /usr/bin/turndesk)")/../{_PROGRAMS}'
+_APT = "DEBIAN_FRONTEND=noninteractive apt-get -qq -y"
+USES: Sequence[tuple[str, str]] = (
+    ("the version", "turndesk --version"),
+    ("a proof", "turndesk prove $samples/pin.nc --offsets $samples/offsets.toml"),
+    ("proofs of a folder, by several processes", "turndesk prove $samples --offsets $samples/offsets.toml"),
+    ("a run without a screen", "turndesk run $samples/pin.nc --headless --offsets $samples/offsets.toml"),
+    (
+        "a report as PDF",
+        "turndesk prove $samples/pin.nc --offsets $samples/offsets.toml --report /root/part.pdf",
+    ),
+    ("the screen for 20 s", "QT_QPA_PLATFORM=offscreen timeout 20 turndesk --demo; test $? = 124"),
+    ("the group for real-time priority", "getent group machine"),
+)
+"""What is tried after the installation and after the upgrade, as shell commands."""
+
+
+def earlier_package(package: Path, folder: Path) -> Path:
+    """Return the same package as version 0.0.0, with its files in another folder."""
+    root = folder / "earlier"
+    run("dpkg-deb", "--raw-extract", package, root)
+    version = next((root / "opt" / "turndesk").iterdir())
+    version.rename(version.with_name(_EARLIER))
+    command = root / "usr" / "bin" / "turndesk"
+    command.unlink()
+    command.symlink_to(f"/opt/turndesk/{_EARLIER}/bin/turndesk")
+    for path in (root / "DEBIAN").iterdir():
+        text = path.read_text(encoding="utf-8").replace(version.name, _EARLIER)
+        path.write_text(
+            re.sub(r"^Version: .*$", f"Version: {_EARLIER}", text, flags=re.MULTILINE), encoding="utf-8"
+        )
+    made = folder / f"turndesk_{_EARLIER}.deb"
+    run("dpkg-deb", "--root-owner-group", "-Znone", "--build", root, made)
+    shutil.rmtree(root)
+    return made
+
+
+@contextmanager
+def bare_root(release: str, folder: Path) -> Iterator[Path]:
+    """Yield a minimal root of a Debian release, with its mounts and the package sources of this computer."""
+    root = folder / "root"
+    run("debootstrap", "--variant=minbase", release, root)
+    (root / "etc" / "apt" / "sources.list").unlink(missing_ok=True)
+    for part in ("sources.list", "sources.list.d/debian.sources", "apt.conf.d", "trusted.gpg.d"):
+        source, target = Path("/etc/apt") / part, root / "etc" / "apt" / part
+        if source.is_dir():
+            shutil.copytree(source, target, dirs_exist_ok=True)
+        elif source.is_file():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, target)
+    with suppress(OSError):
+        shutil.copy("/etc/resolv.conf", root / "etc" / "resolv.conf")
+    mounted = []
+    try:
+        for name in _MOUNTS:
+            run("mount", "--bind", f"/{name}", root / name)
+            mounted.append(name)
+        yield root
+    finally:
+        for name in reversed(mounted):
+            run("umount", "--lazy", root / name)
+
+
+def in_root(root: Path, command: str) -> str:
+    """Run a shell command in the root, and return its output. Raises BundleError if it fails."""
+    lines = f"export HOME=/root LC_ALL=C.UTF-8 TURNDESK_HOME=/root/data; {_SAMPLES}; {command}"
+    return run("chroot", root, "sh", "-c", lines)
+
+
+def files(root: Path) -> set[str]:
+    """Return the files of the root that a purge must leave as they were."""
+    listed = in_root(root, "find / -xdev \\( -type f -o -type l \\) -print").splitlines()
+    return {name for name in listed if not _IGNORED.match(name)}
+
+
+def check(package: Path, release: str) -> Iterator[str]:
+    """Yield one line for each success. Raises BundleError at the first failure."""
+    with tempfile.TemporaryDirectory(prefix="turndesk-") as work, bare_root(release, Path(work)) as root:
+        earlier = earlier_package(package, Path(work))
+        shutil.copy(earlier, root / "root" / "earlier.deb")
+        shutil.copy(package, root / "root" / "new.deb")
+        in_root(root, f"{_APT} update")
+        depends = run("dpkg-deb", "--field", package, "Depends")
+        names = [re.split(r"[ (|:]", each.strip())[0] for each in depends.split(",")]
+        in_root(root, f"{_APT} install --no-install-recommends {' '.join(names)}")
+        before = files(root)
+        for name in ("earlier", "new"):
+            in_root(root, f"dpkg -i /root/{name}.deb")
+            for what, command in USES:
+                in_root(root, command)
+                yield f"{name}: {what}"
+        if "/opt/turndesk/0.0.0" in "\n".join(files(root)):
+            raise BundleError("the upgrade left files of the earlier version")
+        in_root(root, "dpkg --remove turndesk && dpkg --purge turndesk")
+        if left := sorted(files(root) - before):
+            raise BundleError(f"purge left: {', '.join(left[:10])}")
+        if gone := sorted(before - files(root)):
+            raise BundleError(f"purge removed files of others: {', '.join(gone[:10])}")
+        if in_root(root, "getent group machine || echo none").strip() != "none":
+            raise BundleError("purge left the group machine")
+        in_root(root, "test -s /root/data/turndesk.db || test -d /root/data/logs")
+        yield "removed and purged: only the data folder remains"
+
+
+def lintian_errors(package: Path) -> list[str]:
+    """Return the errors that lintian reports and that no documented override explains."""
+    done = subprocess.run(
+        ["lintian", "--no-cfg", "--tag-display-limit=0", str(package)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return [line for line in done.stdout.splitlines() if line.startswith("E: ")]
+
+
+def main(argv: Sequence[str]) -> int:
+    """Check one package."""
+    parser = argparse.ArgumentParser(prog="python -m resources.setup.release_check", description=__doc__)
+    parser.add_argument("package", type=Path)
+    parser.add_argument("--release", default="bookworm", help="Debian release (default: bookworm)")
+    parser.add_argument("--without-lintian", action="store_true")
+    args = parser.parse_args(argv)
+    try:
+        for line in check(args.package, args.release):
+            sys.stdout.write(f"{line}\n")
+            sys.stdout.flush()
+        errors = [] if args.without_lintian else lintian_errors(args.package)
+    except (BundleError, OSError) as error:
+        sys.stderr.write(f"The package failed: {error}\n")
+        return 1
+    sys.stderr.write("".join(f"{line}\n" for line in errors))
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,190 @@
+"""Release artefacts: the same bytes each time, versions in order, complete templates, and a manual page."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import re
+import subprocess
+import tarfile
+from pathlib import Path
+
+import pytest
+
+from app.cli.actions.desktop_entry import entry_text
+from app.cli.main import all_commands
+from resources.setup import release, release_check
+from resources.setup.bundle import BundleError
+from resources.setup.lock import HERE, PYTHONS
+from resources.setup.packages import debian_package, manual_page, same_bytes
+from resources.setup.packages.debian_package import TARGETS, debian_version
+from resources.setup.sbom import sbom
+
+DEBIAN = HERE / "debian"
+WORDS = {"VERSION", "ARCHITECTURE", "PYTHON", "GLIBC", "SIZE", "FOLDER"}
+
+
+@pytest.fixture(autouse=True)
+def at_a_stated_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1796113800")  # 2026-12-01 08:30 UTC
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "folder"
+    (made / "b").mkdir(parents=True)
+    (made / "b" / "run").write_text("run")
+    (made / "b" / "run").chmod(0o711)
+    (made / "a").write_text("a")
+    (made / "link").symlink_to("/usr/bin/python3")
+    return made
+
+
+def test_an_archive_has_the_same_bytes_at_another_time_and_of_another_owner(
+    folder: Path, tmp_path: Path
+) -> None:
+    same_bytes.set_times(folder)
+    same_bytes.write_tar_gz(folder, tmp_path / "1.tar.gz", "x")
+    (folder / "a").touch()
+    same_bytes.set_times(folder)
+    same_bytes.write_tar_gz(folder, tmp_path / "2.tar.gz", "x")
+    assert (tmp_path / "1.tar.gz").read_bytes() == (tmp_path / "2.tar.gz").read_bytes()
+    with tarfile.open(tmp_path / "1.tar.gz") as archive:
+        members = {each.name: each for each in archive.getmembers()}
+        assert {(each.uid, each.uname, each.mtime) for each in members.values()} == {(0, "root", 1796113800)}
+        assert (members["x/b/run"].mode, members["x/a"].mode) == (0o755, 0o644)
+        assert members["x/link"].linkname == "/usr/bin/python3"
+
+
+def test_another_content_has_other_bytes(folder: Path, tmp_path: Path) -> None:
+    same_bytes.write_tar_gz(folder, tmp_path / "1.tar.gz", "x")
+    (folder / "a").write_text("b")
+    same_bytes.write_tar_gz(folder, tmp_path / "2.tar.gz", "x")
+    assert (tmp_path / "1.tar.gz").read_bytes() != (tmp_path / "2.tar.gz").read_bytes()
+
+
+def test_an_archive_of_others_is_put_in_order(tmp_path: Path) -> None:
+    made = []
+    for number, names in enumerate((("a", "b"), ("b", "a"))):
+        path = tmp_path / f"{number}.tar.gz"
+        with tarfile.open(path, "w:gz") as archive:
+            for name in names:
+                member = tarfile.TarInfo(f"p/{name}")
+                member.size, member.mtime, member.uname = 1, 1000 + number, f"user{number}"
+                archive.addfile(member, io.BytesIO(name.encode()))
+        same_bytes.repack_tar_gz(path)
+        made.append(path.read_bytes())
+    assert made[0] == made[1]
+
+
+def test_two_folders_are_compared_by_names_and_bytes(tmp_path: Path) -> None:
+    for name, text in (("1/a", "x"), ("2/a", "x"), ("1/b", "x"), ("2/b", "y"), ("2/c", "")):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    assert release.differences(tmp_path / "1", tmp_path / "2") == ["b", "c"]
+    assert release.differences(tmp_path / "1", tmp_path / "1") == []
+
+
+def test_sums_are_those_of_the_files(tmp_path: Path) -> None:
+    (tmp_path / "a").write_bytes(b"abc")
+    release.write_sums(tmp_path)
+    release.write_sums(tmp_path)  # the list itself is not in the list
+    assert (tmp_path / release.SUMS).read_text() == f"{hashlib.sha256(b'abc').hexdigest()}  a\n"
+
+
+def test_an_existing_folder_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert release.main([str(tmp_path)]) == 1
+    assert "exists already" in capsys.readouterr().err
+
+
+def test_a_version_with_a_commit_precedes_its_release() -> None:
+    target = TARGETS["debian12"]
+    assert debian_version("0.1.0", target) == "0.1.0+debian12"
+    assert debian_version("0.1.0-20261201-1a2b3c4", target) == "0.1.0~202612010830.1a2b3c4+debian12"
+
+
+def test_a_changed_checkout_has_no_version() -> None:
+    with pytest.raises(BundleError):
+        debian_version("0.1.0-20261201-1a2b3c4-changed", TARGETS["debian12"])
+
+
+def test_the_pythons_of_the_targets_are_locked() -> None:
+    assert {each.python for each in TARGETS.values()} <= set(PYTHONS)
+
+
+@pytest.mark.parametrize("name", ["control", "postinst", "prerm", "postrm"])
+def test_every_place_of_a_template_is_filled(name: str) -> None:
+    places = set(re.findall("@([A-Z]+)@", (DEBIAN / name).read_text(encoding="utf-8")))
+    assert places <= WORDS
+
+
+@pytest.mark.parametrize("name", ["postinst", "prerm", "postrm", "kiosk", "turndesk"])
+def test_scripts_are_shell_that_ends_at_an_error(name: str) -> None:
+    text = (DEBIAN / name).read_text(encoding="utf-8")
+    assert subprocess.run(["/bin/sh", "-n"], input=text, text=True, check=False).returncode == 0
+    assert "set -e" in text or "exec " in text
+    assert "/home" not in text
+
+
+def test_the_package_depends_on_the_libraries_of_the_set_up() -> None:
+    control = (DEBIAN / "control").read_text(encoding="utf-8")
+    text = (HERE / "environment.sh").read_text(encoding="utf-8")
+    wanted = " ".join(re.findall(r'^(?:QT|WINDOW|WAYLAND)_LIBRARIES="(.*)"$', text, re.MULTILINE)).split()
+    assert len(wanted) > 10
+    assert [name for name in wanted if name not in control] == []
+
+
+def test_every_override_of_lintian_has_a_reason() -> None:
+    lines = (DEBIAN / "lintian-overrides").read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("#")
+    assert [line for line in lines if not line.startswith(("#", "turndesk: "))] == []
+
+
+def test_the_copyright_names_every_package() -> None:
+    text = debian_package._copyright()
+    assert {"numpy", "pyside6-essentials", "psycopg"} <= set(re.findall(r"authors of (\S+),", text))
+    assert "pytest" not in text
+
+
+def test_the_manual_page_has_every_command_and_no_bare_special_line() -> None:
+    page = manual_page.manual_page()
+    headings = {
+        line.removeprefix(".SS turndesk ").split()[0] for line in page.splitlines() if line[:3] == ".SS"
+    }
+    assert {each.replace("-", r"\-") for each in all_commands()} == headings
+    assert page.startswith('.TH TURNDESK 1 "2026-12-01"')
+    assert {line.split()[0] for line in page.splitlines() if line.startswith(".")} <= {
+        ".TH",
+        ".SH",
+        ".SS",
+        ".TP",
+        ".B",
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"), [(".x", r"\&.x"), ("'x", r"\&'x"), ("--a\\b", r"\-\-a\eb"), ("a.b", "a.b")]
+)
+def test_special_characters_of_the_manual_are_escaped(text: str, expected: str) -> None:
+    assert manual_page.escaped(text) == expected
+
+
+def test_the_menu_entry_is_that_of_the_command(tmp_path: Path) -> None:
+    assert "Exec=/usr/bin/turndesk %f" in entry_text("/usr/bin/turndesk %f")
+
+
+def test_the_sbom_of_a_release_is_the_same_each_time() -> None:
+    assert sbom("1.2", []) == sbom("1.2", [])
+    assert sbom("1.2", [])["serialNumber"] != sbom("1.3", [])["serialNumber"]
+    assert sbom("1.2", [])["metadata"]["timestamp"] == "2026-12-01T08:30:00+00:00"
+
+
+def test_what_a_purge_may_leave_is_only_what_changes_anyway() -> None:
+    ignored = release_check._IGNORED
+    assert [
+        name
+        for name in ("/root/data/x", "/var/cache/x", "/var/lib/dpkg/x", "/tmp/x")
+        if not ignored.match(name)
+    ] == []
+    kept = ("/opt/turndesk/x", "/etc/x", "/usr/x", "/var/lib/turndesk/x", "/rootkit")
+    assert [name for name in kept if ignored.match(name)] == []
