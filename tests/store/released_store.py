@@ -10,9 +10,11 @@ import sqlite3
 import sys
 import tempfile
 from collections.abc import Sequence
+from concurrent.futures import Future
 from contextlib import closing
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from app import VERSION
 from core.store.people import PersonRow
@@ -32,7 +34,7 @@ def fill(store: Store) -> None:
     feature = FeatureRow(0, "peg.nc", "SPIGOT", "diameter", 12.7, -0.05, 0.05, "tool", 1, 1, 0, 1)
     of = store.write(partial(measured_parts.save_feature, row=feature)).result(60)
     reading = ReadingRow(0, of, 1, 12.69, "in", AT, "gauge", "mic")
-    waiting = [
+    waiting: list[Future[Any]] = [
         store.write(partial(measured_parts.add_reading, row=reading)),
         store.write(partial(tool_lives.set_limits, row=tool_lives.LifeRow(1, 50))),
         store.offsets.tools.change_row(1, "first", {"x": 1.25, "z": -0.5}),
