@@ -97,6 +97,7 @@ APART = frozenset(
         *("office_desk.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
         "profile_command.py",
         *("shapes_command.py", "shape_steps.py"),
+        "convert/reasons.py",
         *("screen/pdf_pages.py", "lines/sinumerik_lines.py"),
         "lines/live_lines.py",
         *(

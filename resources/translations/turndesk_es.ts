@@ -4885,11 +4885,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>the lead</source>
-      <translation>el paso</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>the maximum depth of cut</source>
       <translation>la profundidad de corte máxima</translation>
     </message>
@@ -8462,6 +8457,11 @@
       <location filename="app/extras/analyses/spindle_response.py" />
       <source>{target} → {target2} rpm</source>
       <translation>{target} → {target2} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/extra.py" />
+      <source>convert a turning program of another control to OmniTurn</source>
+      <translation>convertir a OmniTurn un programa de torneado de otro control</translation>
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />
@@ -18992,6 +18992,41 @@
       <location filename="core/extras/analyses/thread_passes.py" />
       <source>this time range does not contain a thread pass, because no axis moves at a steady speed for two spindle revolutions</source>
       <translation>este intervalo no contiene ninguna pasada de rosca, porque ningún eje avanza a velocidad uniforme durante dos vueltas del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>feed per revolution</source>
+      <translation>el avance por revolución</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the center in X</source>
+      <translation>el centro en X</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the center in Z</source>
+      <translation>el centro en Z</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the kind of move</source>
+      <translation>el tipo de movimiento</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the lead</source>
+      <translation>el paso</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the spindle speed</source>
+      <translation>la velocidad del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the step</source>
+      <translation>el paso</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/contour_walk.py" />

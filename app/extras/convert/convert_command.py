@@ -1,0 +1,222 @@
+"""Command ``turndesk convert FILE``: a turning program of another control as a proved OmniTurn program."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.program_options import out_file
+from app.cli.store_command import opened_store
+from app.cli.who_changes import add_as_option, note_change, who_may
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
+from core.access.access_table import Act
+from core.extras.convert.source_options import Control, Options
+from core.json_key import Output, keys
+from core.language.source import SourceError, load_source
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from core.extras.convert.conversion import Conversion
+    from core.machine.machine_model import Machine
+
+_MM_PER_INCH = 25.4
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the options of the command."""
+    parser = subparsers.add_parser("convert")
+    parser.add_argument("file", metavar="FILE", help="program of the other control")
+    parser.add_argument(
+        "--from",
+        dest="control",
+        choices=[str(each) for each in Control],
+        help="control of the program; fanuc-a and fanuc-b are G-code systems A and B (default: recognized)",
+    )
+    parser.add_argument("--to", choices=("omniturn",), default="omniturn", help="language of the result")
+    parser.add_argument(
+        "--no-point",
+        choices=("1", "0.001"),
+        help="value of X1000 without a decimal point: 1 means 1000 units, 0.001 means 1 mm or .1 in",
+    )
+    parser.add_argument(
+        "--unit", choices=("inch", "mm"), help="unit of a program without G20 and G21 (G70 and G71)"
+    )
+    parser.add_argument(
+        "--x", choices=("diameter", "radius"), help="meaning of X at the start (default: of the control)"
+    )
+    parser.add_argument(
+        "--tool-post",
+        choices=("rear", "front"),
+        default="rear",
+        help="front: G02, G03, G41 and G42 are seen with X+ toward the operator",
+    )
+    parser.add_argument(
+        "--skip-m", type=_m_codes, default=frozenset(), metavar="N,N", help="M codes to leave out"
+    )
+    parser.add_argument("--no-comments", action="store_true", help="write no comments with source lines")
+    parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
+    parser.add_argument(
+        "--out", type=out_file, metavar="FILE", help="program file to write (default: stdout)"
+    )
+    add_as_option(parser)
+    parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
+
+
+def _m_codes(text: str) -> frozenset[int]:
+    """Return the M codes of a list such as 41,42. Raises ArgumentTypeError."""
+    parts = [each.strip().upper().removeprefix("M") for each in text.split(",")]
+    if not all(each.isdecimal() for each in parts):
+        raise argparse.ArgumentTypeError(
+            Message("{text} is not a list of M codes; write --skip-m 41,42", text=f"{text!r}")
+        )
+    return frozenset(map(int, parts))
+
+
+def run(args: argparse.Namespace) -> int:
+    """Convert and prove the program; write it only if it has no errors. Return 1 if it has errors."""
+    from app.compose.machine.machine_setup import control_limits, read_machine
+    from core.extras.convert.conversion import convert
+    from core.extras.convert.recognition import recognized
+
+    machine = read_machine(args.machine)
+    who = _may_write(args)
+    with as_command_error(SourceError):
+        source = load_source(Path(args.file))
+    control = Control(args.control) if args.control else recognized(source.lines)
+    if control is None:
+        raise CommandError(
+            Message("{file} is not recognized; name its control with --from", file=args.file),
+            "control-unknown",
+        )
+    done = convert(source.lines, _options(args, control, machine), control_limits(machine))
+    if args.out is not None and not done.errors:
+        _write(args, done.text, who)
+    _print(args, control, done)
+    return EXIT_ERRORS if done.errors else EXIT_OK
+
+
+def _options(args: argparse.Namespace, control: Control, machine: Machine) -> Options:
+    return Options(
+        control,
+        no_point=float(args.no_point or 0),
+        metric=None if args.unit is None else args.unit == "mm",
+        diameter=None if args.x is None else args.x == "diameter",
+        front=args.tool_post == "front",
+        skipped_m=args.skip_m,
+        comments=not args.no_comments,
+        rapid=machine.limits.max_feed * 60,
+        most_rpm=machine.spindle.rpm_max,
+        most_feed=machine.limits.max_feed * 60,
+        m_codes=frozenset(machine.m_codes),
+    )
+
+
+def _may_write(args: argparse.Namespace) -> str:
+    """Return the user who may write ``--out``, or an empty string without it. Raises CommandError."""
+    if args.out is None:
+        return ""
+    if Path(args.out).exists():
+        raise CommandError(
+            Message("{file} already exists and will not be overwritten; use a different name", file=args.out),
+            "file-exists",
+        )
+    if not Path(args.out).parent.is_dir():
+        raise CommandError(
+            Message("{file} cannot be written: its folder does not exist", file=args.out), "no-folder"
+        )
+    return who_may(opened_store, args, Act.PROGRAMS)
+
+
+def _write(args: argparse.Namespace, text: str, who: str) -> None:
+    from app.programs.whole_file import FileError, write_new
+
+    with as_command_error(FileError):
+        write_new(Path(args.out), text.encode("ascii", "replace"))
+    note_change(
+        opened_store,
+        who,
+        Message("program {out} converted from {file}", out=Path(args.out).name, file=Path(args.file).name),
+    )
+
+
+def _print(args: argparse.Namespace, control: Control, done: Conversion) -> None:
+    if args.json:
+        sys.stdout.write(json.dumps(_in_json(args, control, done)) + "\n")
+        return
+    if args.out is None and not done.errors:
+        sys.stdout.write(done.text)
+    for each in done.findings:
+        sys.stderr.write(f"{each.in_one_line(args.file)}\n")
+    sys.stderr.write(f"{_summary(args, control, done)}\n")
+
+
+def _summary(args: argparse.Namespace, control: Control, done: Conversion) -> str:
+    if done.errors:
+        return Message("{file}: not converted from {control}", file=args.file, control=control)
+    proof = done.proof
+    return Message(
+        "{file}: converted from {control}, {lines} lines, {compared} steps proved equal, {rounded} values "
+        "rounded by at most {most} in",
+        file=args.file,
+        control=control,
+        lines=len(done.lines),
+        compared=proof.compared,
+        rounded=proof.rounded,
+        most=f"{proof.most / _MM_PER_INCH:.6f}",
+    )
+
+
+def _in_json(args: argparse.Namespace, control: Control, done: Conversion) -> dict[str, object]:
+    return {
+        "file": args.file,
+        "from": str(control),
+        "to": args.to,
+        "out": args.out if not done.errors else None,
+        "program": done.text,
+        "source_lines": [each.line for each in done.lines],
+        "steps_compared": done.proof.compared,
+        "values_rounded": done.proof.rounded,
+        "largest_rounding_mm": done.proof.most,
+        "findings": [
+            {
+                "line": each.line,
+                "column": each.column,
+                "severity": str(each.severity),
+                "code": each.code,
+                "message": str(each.message),
+                "hint": str(each.hint),
+            }
+            for each in done.findings
+        ],
+    }
+
+
+CONVERT = Output(
+    "convert FILE --json",
+    "One object. If a finding is an error, the exit status is 1, and the program must not be used.",
+    keys(
+        """
+file | string | | The source program.
+from | string | | Control of the source program.
+to | string | | Language of the converted program.
+out | string or null | | File of --out, if it was written.
+program | string | | Text of the converted program.
+source_lines | list | | Line of the source for each line of the converted program.
+steps_compared | integer | | Moves and actions of the source that the proof compared.
+values_rounded | integer | | Coordinates that differ from the source because of the resolution of the control.
+largest_rounding_mm | number | mm | Largest difference of these coordinates, with X as a radius.
+findings | list | | Differences and errors.
+findings[].line | integer | | Line of the source; 0 means the whole file.
+findings[].column | integer | | Column of the source; 0 means the whole line.
+findings[].severity | string | | error or warning.
+findings[].code | string | | Code of the finding.
+findings[].message | string | | What is different or wrong.
+findings[].hint | string | | What to do.
+"""
+    ),
+)
+OUTPUTS = (CONVERT,)

@@ -1,0 +1,1 @@
+"""Conversion of turning programs of other controls to OmniTurn."""

@@ -1,0 +1,61 @@
+"""Conversion of a source program: reading, writing and proof."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from core.extras.convert.conversion_proof import Proof, prove
+from core.extras.convert.omniturn_writer import Writer, WrittenLine
+from core.extras.convert.path_steps import MOVES
+from core.extras.convert.reasons import refuse
+from core.extras.convert.source_options import Options
+from core.extras.convert.source_reader import read_source
+from core.interpreter.shared.job_setup import ControlLimits
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Conversion:
+    """A converted program.
+
+    ``findings`` are about lines of the source. If they include an error, ``lines`` must not be used.
+    """
+
+    lines: tuple[WrittenLine, ...]
+    findings: tuple[Diagnostic, ...]
+    proof: Proof
+
+    @property
+    def errors(self) -> Sequence[Diagnostic]:
+        """The findings that prevent the conversion."""
+        return [each for each in self.findings if each.severity is Severity.ERROR]
+
+    @property
+    def text(self) -> str:
+        """The converted program."""
+        return "".join(f"{each.text}\n" for each in self.lines)
+
+
+def convert(texts: Sequence[str], options: Options, limits: ControlLimits) -> Conversion:
+    """Convert the lines of a source program to OmniTurn, and prove the result for a machine."""
+    state, findings = read_source(texts, options)
+    if any(each.severity is Severity.ERROR for each in findings):
+        return Conversion((), tuple(findings), Proof())
+    if not any(step.kind in MOVES for step in state.steps):
+        return Conversion((), (*findings, refuse(0, 0, "file-empty").diagnostic), Proof())
+    metric = bool(state.metric)
+    writer = Writer(metric, options)
+    try:
+        writer.write(state.steps)
+    except ProgramError as error:
+        return Conversion((), (*findings, *writer.warnings, error.diagnostic), Proof())
+    lines = tuple(writer.lines)
+    proof = prove(
+        "".join(f"{each.text}\n" for each in lines),
+        [each.line for each in lines],
+        state.steps,
+        limits,
+        metric=metric,
+    )
+    return Conversion(lines, (*findings, *writer.warnings, *proof.errors), proof)

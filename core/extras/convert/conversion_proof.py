@@ -1,0 +1,312 @@
+"""Proof of a conversion: the blocks of the converted program against the steps of the source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from core.extras.convert.path_steps import MOVES, Kind, Step
+from core.extras.convert.reasons import refuse
+from core.interpreter.dialects import interpretation
+from core.interpreter.shared import actions
+from core.interpreter.shared.elementary_blocks import Block
+from core.interpreter.shared.elementary_blocks import Kind as BlockKind
+from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.units import FEET_PER_MINUTE, METRES_PER_MINUTE
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Dialect, Source
+
+EQUAL = 1e-6 * 25.4  # mm
+_HALF_STEP = 0.000025 * 25.4  # mm; half of the resolution of OmniTurn in inches, of the radius and of Z
+_HALF_STEP_METRIC = 0.00005  # mm
+_CLEARANCE = 0.0002 * 25.4  # mm; retract of a thread pass
+_OFFSET = ToolOffset(12.7, -76.2)
+_KINDS = {
+    Kind.RAPID: BlockKind.RAPID,
+    Kind.FEED: BlockKind.FEED,
+    Kind.ARC: BlockKind.ARC,
+    Kind.THREAD: BlockKind.THREAD,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """Result of a proof: the differences, and the number of compared steps.
+
+    ``rounded`` counts the moves whose end the resolution of the control changes, by at most ``most`` mm.
+    """
+
+    errors: tuple[Diagnostic, ...] = ()
+    compared: int = 0
+    rounded: int = 0
+    most: float = 0.0
+
+
+def prove(
+    text: str,
+    sources: Sequence[int],
+    steps: Sequence[Step],
+    limits: ControlLimits,
+    *,
+    metric: bool,
+) -> Proof:
+    """Interpret the converted program and compare it with the steps of the source.
+
+    ``sources`` are the source lines of the lines of ``text``.
+    """
+    tools = dict.fromkeys(range(1, 33), _OFFSET)
+    nose = dict.fromkeys(range(1, 33), SecondaryOffset())
+    done = interpretation(
+        Source("converted", text, Dialect.OMNITURN), Setup(tools=tools, secondary=nose, limits=limits)
+    )
+    blocks = list(done.blocks())
+    errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
+    if errors:
+        return Proof(tuple(_of_target(each, text, sources) for each in errors))
+    return _Comparison(blocks, steps, metric=metric).run()
+
+
+def _of_target(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnostic:
+    """Return a finding of the interpreter at the source line of its line."""
+    line = sources[found.line - 1] if found.line else 0
+    made = text.splitlines()[found.line - 1] if found.line else ""
+    error = refuse(line, 0, "target", made=made, message=found.message, hint=found.hint)
+    return replace(error.diagnostic, hint=found.hint)
+
+
+class _DifferenceError(Exception):
+    """The first difference of a converted program."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+class _Comparison:
+    """Comparison of blocks and steps, in their order."""
+
+    def __init__(
+        self,
+        blocks: Sequence[Block],
+        steps: Sequence[Step],
+        *,
+        metric: bool,
+    ) -> None:
+        self._blocks = [each for each in blocks if not _is_idle(each)]
+        self._metric = metric
+        self._steps = list(_known(steps))
+        self._at = 0
+        self._tool = 0
+        self._rounded = 0
+        self._most = 0.0
+        self._near = EQUAL + (_HALF_STEP_METRIC if metric else _HALF_STEP)
+
+    def run(self) -> Proof:
+        try:
+            compared = self._compare()
+        except _DifferenceError as found:
+            return Proof((found.diagnostic,))
+        return Proof((), compared, self._rounded, self._most)
+
+    def _compare(self) -> int:
+        compared = 0
+        steps = self._steps
+        at = 0
+        while at < len(steps):
+            step = steps[at]
+            if step.kind is Kind.TOOL:
+                self._tool = round(step.number)
+                at += 1
+                continue
+            count = self._thread_zone(at)
+            if count:
+                compared += count
+                at += count
+                continue
+            self._one(step)
+            compared += 1
+            at += 1
+        if self._at < len(self._blocks):
+            self._differs(steps[-1].line if steps else 0, "proof-length", len(self._blocks), self._at)
+        return compared
+
+    def _next(self, step: Step) -> Block:
+        if self._at >= len(self._blocks):
+            self._differs(step.line, "proof-length", len(self._blocks), len(self._steps))
+        self._at += 1
+        return self._blocks[self._at - 1]
+
+    def _differs(self, line: int, code: str, made: object, wanted: object, what: str = "") -> None:
+        raise _DifferenceError(refuse(line, 0, code, made=made, wanted=wanted, what=what).diagnostic)
+
+    def _same(self, step: Step, what: str, made: float, wanted: float, near: float) -> None:
+        if abs(made - wanted) > near:
+            self._differs(step.line, "proof-differs", f"{made:.6f}", f"{wanted:.6f}", what)
+        if what in {"X", "Z"} and abs(made - wanted) > EQUAL:
+            self._rounded += 1
+            self._most = max(self._most, abs(made - wanted))
+
+    # --- one step
+
+    def _one(self, step: Step) -> None:
+        if step.kind is Kind.HOME:
+            self._home(step)
+            return
+        block = self._next(step)
+        if step.kind in MOVES:
+            self._move(step, block)
+        elif block.action is None:
+            self._differs(step.line, "proof-differs", block.kind, step.kind, "the step")
+        else:
+            self._action(step, block.action)
+
+    def _home(self, step: Step) -> None:
+        """Compare a move to machine home, which is not a block if the axes are already there."""
+        at = self._at
+        if (
+            at < len(self._blocks)
+            and self._blocks[at].kind is BlockKind.RAPID
+            and not self._blocks[at].modal.tool
+        ):
+            block = self._next(step)
+            if step.x is not None:
+                self._same(step, "machine X", block.mx, 0.0, EQUAL)
+            if step.z is not None:
+                self._same(step, "machine Z", block.mz, 0.0, EQUAL)
+
+    def _move(self, step: Step, block: Block) -> None:
+        if block.kind is not _KINDS[step.kind]:
+            self._differs(step.line, "proof-differs", block.kind, step.kind, "the kind of move")
+        if block.modal.tool != self._tool:
+            self._differs(step.line, "proof-differs", block.modal.tool, self._tool, "T")
+        assert step.x is not None
+        assert step.z is not None
+        self._same(step, "X", block.x, step.x, self._near)
+        self._same(step, "Z", block.z, step.z, self._near)
+        if step.kind is Kind.RAPID:
+            return
+        if step.kind is Kind.ARC:
+            self._same(step, "the center in X", block.cx, step.cx, 3 * self._near)
+            self._same(step, "the center in Z", block.cz, step.cz, 3 * self._near)
+            if block.clockwise != step.clockwise:
+                self._differs(step.line, "proof-differs", block.clockwise, step.clockwise, "clockwise")
+        if step.kind is Kind.THREAD:
+            self._same(step, "the lead", block.feed, step.feed, 1e-6)
+            return
+        if block.per_rev != step.per_rev:
+            self._differs(step.line, "proof-differs", block.per_rev, step.per_rev, "feed per revolution")
+        made = block.feed * (1 if step.per_rev else 60)
+        self._same(step, "the feed", made, step.feed, 1e-6 * step.feed + 1e-6)
+
+    def _action(self, step: Step, action: actions.Action) -> None:
+        wanted = _action_of(step, metric=self._metric)
+        if isinstance(action, actions.SpindleRun) and isinstance(wanted, actions.SpindleRun):
+            self._spindle(step, action, wanted)
+            return
+        if isinstance(action, actions.ProgramStop):
+            action = replace(action, message="")
+        # The machine file defines the outputs of other M codes, and the interpreter applies it.
+        if action != wanted and not (isinstance(action, actions.Output) and step.kind is Kind.M):
+            self._differs(step.line, "proof-differs", action, wanted, "the step")
+
+    def _spindle(self, step: Step, made: actions.SpindleRun, wanted: actions.SpindleRun) -> None:
+        """Compare the speed; under constant surface speed, the rpm of a block depends on its position."""
+        css = made.surface_speed is not None
+        if css != (wanted.surface_speed is not None) or (made.rpm > 0) != (wanted.rpm > 0):
+            self._differs(step.line, "proof-differs", made, wanted, "the spindle")
+        speeds = (made.surface_speed, wanted.surface_speed) if css else (made.rpm, wanted.rpm)
+        self._same(step, "the spindle speed", speeds[0] or 0.0, speeds[1] or 0.0, 1e-3)
+
+    # --- threads
+
+    def _thread_zone(self, at: int) -> int:
+        """Compare a thread pass with the rapids around it; return the number of steps, or 0 for no thread."""
+        steps, blocks = self._steps, self._blocks
+        infeed = at
+        while infeed < len(steps) and steps[infeed].kind is Kind.RAPID:
+            infeed += 1
+        if infeed == len(steps) or steps[infeed].kind is not Kind.THREAD:
+            return 0
+        end = infeed
+        while end < len(steps) and steps[end].kind in {Kind.RAPID, Kind.THREAD}:
+            end += 1
+        last = self._at
+        while (
+            last < len(blocks)
+            and blocks[last].kind in {BlockKind.RAPID, BlockKind.THREAD}
+            and blocks[last].modal.tool == self._tool
+        ):
+            last += 1
+        self._zone(steps[at:end], blocks[self._at : last])
+        self._at = last
+        return end - at
+
+    def _zone(self, steps: Sequence[Step], blocks: Sequence[Block]) -> None:
+        """Compare threads exactly, and rapids as far as the retract of the cycle allows."""
+        made = iter(blocks)
+        for step in steps:
+            for block in made:
+                if step.kind is Kind.THREAD and block.kind is BlockKind.THREAD:
+                    self._move(step, block)
+                    break
+                if step.kind is Kind.RAPID and block.kind is BlockKind.RAPID and self._is_near(step, block):
+                    break
+                if block.kind is BlockKind.THREAD:
+                    self._differs(step.line, "proof-differs", "thread", step.kind, "the kind of move")
+            else:
+                self._differs(step.line, "proof-length", len(blocks), len(steps))
+
+    def _is_near(self, step: Step, block: Block) -> bool:
+        assert step.x is not None
+        assert step.z is not None
+        return abs(block.x - step.x) <= _CLEARANCE and abs(block.z - step.z) <= self._near
+
+
+def _is_idle(block: Block) -> bool:
+    """Return whether a block is not compared: a tool change, a preset, or a move without length."""
+    if block.action is not None:
+        return isinstance(block.action, actions.ToolChange | actions.Preset)
+    return block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0
+
+
+def _known(steps: Sequence[Step]) -> Iterator[Step]:
+    """Yield the steps that blocks must match: without nose codes, presets and moves of unknown end."""
+    for step in steps:
+        if step.kind in MOVES and (step.x is None or step.z is None):
+            continue
+        if step.kind in {Kind.NOSE, Kind.PRESET}:
+            continue
+        if step.kind is Kind.SPINDLE and step.spindle.direction and not step.spindle.speed:
+            continue
+        yield step
+
+
+def _action_of(step: Step, *, metric: bool) -> actions.Action | None:
+    """Return the action of a block that is equal to a step; None if there is no such action."""
+    if step.kind is Kind.SPINDLE:
+        return _spindle_of(step, metric=metric)
+    if step.kind is Kind.DWELL:
+        return actions.Dwell(step.number)
+    if step.kind is Kind.END:
+        return actions.ProgramEnd(reset=step.number == 30)
+    return _M_ACTIONS.get(round(step.number)) if step.kind is Kind.M else None
+
+
+def _spindle_of(step: Step, *, metric: bool) -> actions.Action:
+    spindle = step.spindle
+    if not spindle.direction:
+        return actions.SpindleStop()
+    if spindle.css:
+        unit = METRES_PER_MINUTE if metric else FEET_PER_MINUTE
+        return actions.SpindleRun(float(spindle.direction), spindle.speed * unit)
+    return actions.SpindleRun(spindle.direction * spindle.speed)
+
+
+_M_ACTIONS: Mapping[int, actions.Action] = {
+    0: actions.ProgramStop(optional=False),
+    1: actions.ProgramStop(optional=True),
+    8: actions.Coolant(on=True),
+    9: actions.Coolant(on=False),
+    12: actions.Collet(closed=True),
+    13: actions.Collet(closed=False),
+}

@@ -1,0 +1,64 @@
+"""Steps of a turning program: moves, spindle, tools and M codes, independent of any language."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Kind(StrEnum):
+    """Kind of a step."""
+
+    RAPID = "rapid"
+    FEED = "feed"
+    ARC = "arc"
+    THREAD = "thread"
+    HOME = "home"
+    TOOL = "tool"
+    SPINDLE = "spindle"
+    DWELL = "dwell"
+    M = "m"
+    PRESET = "preset"
+    NOSE = "nose"
+    END = "end"
+
+
+MOVES = frozenset({Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD})
+
+
+@dataclass(frozen=True, slots=True)
+class Spindle:
+    """State of the spindle: ``direction`` 1 is M03, -1 is M04 and 0 is stopped.
+
+    ``speed`` is in rpm, or in units of the program per minute with ``css`` (ft/min or m/min). ``most`` is the
+    maximum rpm under ``css``, or 0.
+    """
+
+    direction: int = 0
+    speed: float = 0.0
+    css: bool = False
+    most: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step. Lengths are in mm, X is a radius, and a coordinate that is unknown is None.
+
+    ``x z`` is the end point, and ``cx cz`` the center of an arc. ``clockwise`` is seen with X+ toward the
+    operator, as in OmniTurn. ``feed`` is in mm/min, or in mm/rev with ``per_rev``; for a thread, it is the
+    lead. ``number`` is a tool, an M code, a dwell in seconds, or 40, 41 or 42 of nose compensation. For HOME,
+    the axes that move are not None. ``comment`` is a comment of the source.
+    """
+
+    kind: Kind
+    line: int
+    x: float | None = None
+    z: float | None = None
+    cx: float = 0.0
+    cz: float = 0.0
+    clockwise: bool = False
+    feed: float = 0.0
+    per_rev: bool = False
+    number: float = 0.0
+    spindle: Spindle = Spindle()
+    comment: str = ""

@@ -1,0 +1,181 @@
+"""All reasons why a source line cannot be converted or is converted differently, with their remedies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.message import Message
+
+ERRORS: Mapping[str, tuple[str, str]] = {
+    "angle-word": (
+        "{word}: this angle needs the intersection with the next line.",
+        "Write the end point with X and Z.",
+    ),
+    "arc-centre": ("The arc has neither R nor a center.", "Write R, or I and K."),
+    "arc-radius": (
+        "The arc's radius is {first} at its start and {last} at its end.",
+        "Correct the end point or the center.",
+    ),
+    "arc-too-small": (
+        "R{radius} is too small for an arc between these points.",
+        "Correct R or the end point.",
+    ),
+    "bad-word": ("{text} cannot be read as a word.", "Correct the text."),
+    "c-axis": (
+        "{word} moves the C axis or a live tool; this conversion supports only turning.",
+        "Write these lines for the C axis of this control by hand.",
+    ),
+    "code-unknown": (
+        "{word} is not supported by the conversion.",
+        "Replace the code with moves, or remove it if it is not needed.",
+    ),
+    "comp-cycle": (
+        "{word} is active in a cycle or on an arc where OmniTurn cannot start nose compensation.",
+        "Start and end nose compensation on straight moves outside the cycle.",
+    ),
+    "corner": (
+        "{word}: the corner does not fit between this move and the next one.",
+        "Write the corner as separate moves.",
+    ),
+    "cycle-contour": (
+        "The contour of the cycle from N{first} to N{last} was not found.",
+        "Correct P and Q of the cycle.",
+    ),
+    "cycle-pocket": (
+        "The contour of the cycle rises and falls in {axis}.",
+        "Rough the pocket with a separate cycle, or write the passes as moves.",
+    ),
+    "cycle-word": ("{word} is missing in the cycle.", "Add the word to the cycle."),
+    "division": ("The expression divides by zero or has no value.", "Correct the expression."),
+    "endless": (
+        "The program executes more than {most} lines.",
+        "Correct the loop, or shorten the program.",
+    ),
+    "expression": ("{text} cannot be evaluated.", "Write the number."),
+    "feed-missing": ("No feed F is programmed for this move.", "Write F on this line or earlier."),
+    "feed-no-point": (
+        "{word}: the value of a feed per revolution without a decimal point depends on a parameter.",
+        "Write F with a decimal point.",
+    ),
+    "file-empty": ("The file contains no moves.", "Choose a file that contains a turning program."),
+    "inverse-time": ("G93 (inverse time feed) is not supported.", "Write feeds with G94 or G95."),
+    "label": ("The target {word} does not exist in this file.", "Add the line number, or correct the jump."),
+    "m-code": (
+        "{word} has no meaning on this machine.",
+        "Define the M code under [m_codes] in the machine file, or leave it out with --skip-m {number}.",
+    ),
+    "mill": (
+        "{word} belongs to a milling program.",
+        "Choose a turning program, or remove the word if it has no effect.",
+    ),
+    "no-point": (
+        "{word} has no decimal point, and its value depends on a parameter of the other control.",
+        "Use --no-point 1 if X1000 is 1000 units, or --no-point 0.001 if X1000 is 1 mm (.1 in).",
+    ),
+    "parentheses": ("The comment has no closing parenthesis.", "Add the parenthesis."),
+    "position": (
+        "The position in {axis} is unknown here, because no earlier line programs it.",
+        "Write an absolute X and Z before this line.",
+    ),
+    "subprogram": (
+        "The subprogram {word} is not in this file.",
+        "Add the subprogram to the file, after the main program.",
+    ),
+    "surface-speed": ("G96 is active, but S is missing.", "Write S with G96."),
+    "thread-chain": (
+        "The thread is not followed by a rapid straight out in X, so it cannot be cut in separate passes.",
+        "End the thread with a rapid in X.",
+    ),
+    "thread-lead": ("The thread has no lead.", "Write F with the lead of the thread."),
+    "tool-number": ("{word}: OmniTurn has the tools T1 to T32.", "Change the tool number."),
+    "unit": (
+        "The program selects neither inches nor millimeters before this line.",
+        "Add G20 or G21 at the start, or use --unit.",
+    ),
+    "variable": (
+        "The variable {word} has no value, or its value comes from the other machine.",
+        "Assign the value at the start of the program.",
+    ),
+    "work-offset": (
+        "{word} selects a second work offset, whose values are stored in the other control.",
+        "Write the shift as G10 before T in the converted program, or convert each part separately.",
+    ),
+}
+WARNINGS: Mapping[str, tuple[str, str]] = {
+    "approach-joined": (
+        "OmniTurn needs X and Z in the first move after T, so the first moves are joined to one rapid.",
+        "Check that the path from the tool change position to this point is clear.",
+    ),
+    "arc-radius-end": (
+        "The end radius of the arc differs from its start radius by {value} mm; OmniTurn accepts .0005 in.",
+        "Check the arc.",
+    ),
+    "diameter-assumed": ("X is treated as a diameter.", "If X is a radius, use --x radius."),
+    "feed-limited": (
+        "{word} is above the maximum feed of this machine; the maximum is used.",
+        "Check the feed.",
+    ),
+    "feed-mode-assumed": (
+        "The program does not select the feed mode; {mode} is assumed.",
+        "Check the feeds.",
+    ),
+    "home-position": (
+        "{word} moves to a position of the other machine; the converted program moves to machine home.",
+        "Check that the path to home is clear.",
+    ),
+    "left-out": ("{word} has no counterpart and is left out.", "Check that the code is not needed."),
+    "nose-offset": (
+        "Nose compensation uses D{number}.",
+        "Enter the nose radius in secondary offset D{number}.",
+    ),
+    "offset-cancelled": (
+        "{word} cancels the tool offset; the converted program keeps it until the next T or home.",
+        "Check the moves that follow.",
+    ),
+    "peck-clearance": (
+        "The distance before the next peck is a parameter of the other control; {value} mm is used.",
+        "Check the pecks.",
+    ),
+    "repeat": (
+        "M99 repeats the main program; the converted program ends with M30.",
+        "Turn on Cycle Repeat to make several parts.",
+    ),
+    "speed-limited": (
+        "{word} is above the maximum spindle speed of this machine; the maximum is used.",
+        "Check the speed.",
+    ),
+    "thread-pull-out": (
+        "The thread's pull-out at an angle is replaced by a pull-out straight in X at the end of the thread.",
+        "Check that the thread has a relief groove.",
+    ),
+}
+PROOF: Mapping[str, tuple[str, str]] = {
+    "proof-differs": (
+        "The converted program moves differently: {what} is {made} instead of {wanted}.",
+        "Report this program; the converted program is not written.",
+    ),
+    "proof-length": (
+        "The converted program has {made} steps instead of {wanted}.",
+        "Report this program; the converted program is not written.",
+    ),
+    "target": ("OmniTurn rejects the converted line {made}: {message}", "{hint}"),
+}
+
+
+def refuse(line: int, column: int, code: str, /, **values: object) -> ProgramError:
+    """Return the error that ends the conversion at this place of the source."""
+    text, hint = ERRORS.get(code) or PROOF[code]
+    return ProgramError(_finding(line, column, Severity.ERROR, code, text, hint, values))
+
+
+def warn(line: int, column: int, code: str, /, **values: object) -> Diagnostic:
+    """Return the warning that a source line is converted differently."""
+    text, hint = WARNINGS[code]
+    return _finding(line, column, Severity.WARNING, code, text, hint, values)
+
+
+def _finding(
+    line: int, column: int, severity: Severity, code: str, text: str, hint: str, values: dict[str, object]
+) -> Diagnostic:
+    return Diagnostic(line, column, severity, code, Message(text, **values), Message(hint, **values))

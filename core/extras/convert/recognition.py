@@ -1,0 +1,36 @@
+"""Recognition of the control for which a turning program was written."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from core.extras.convert.source_options import Control
+
+_COMMENT = re.compile(r"\([^)]*\)?|;.*")
+_LINUXCNC = re.compile(
+    r"^\s*O\s*(<|\d+\s*(SUB|CALL|IF|WHILE|DO|REPEAT)\b)|#<|\bG0?[78](?!\d)|\bG33(?!\d)[^(]*K|G76[^(]*[IJ][^(]*K",
+    re.IGNORECASE | re.MULTILINE,
+)
+_FANUC = re.compile(
+    r"^\s*[O:]\d+\s*$|[UW][-+.\d]|T\d{3,4}(?!\d)|G50(?!\d)[^(]*S|G7[0-3][^(]*P\d+[^(]*Q|G28\s*U|^%?\s*O\d{3,5}",
+    re.IGNORECASE | re.MULTILINE,
+)
+_SYSTEM_B = re.compile(
+    r"G9[45](?!\d)[^XZ]*F|G92(?!\d)[^XZ(]*S|G7[789](?!\d)[^(\n]*[XZ]|G91(?!\d)", re.IGNORECASE
+)
+_HAAS = re.compile(
+    r"\bG53\b|\bM97\b|\bHAAS\b|G54[^(\n]*$|G76[^(\n]*D[^(\n]*K|G71[^(\n]*P\d+[^(\n]*D", re.IGNORECASE
+)
+
+
+def recognized(lines: Sequence[str]) -> Control | None:
+    """Return the control that the words of a program suggest, or None."""
+    text = "\n".join(_COMMENT.sub(" ", each) for each in lines)
+    if _LINUXCNC.search(text):
+        return Control.LINUXCNC
+    if not _FANUC.search(text):
+        return None
+    if _HAAS.search("\n".join(lines)):
+        return Control.HAAS
+    return Control.FANUC_B if _SYSTEM_B.search(text) else Control.FANUC_A

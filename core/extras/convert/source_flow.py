@@ -1,0 +1,300 @@
+"""Order of execution of a source program: subprograms, jumps, loops and O words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from core.extras.convert.expressions import Expression, Variables
+from core.extras.convert.reasons import refuse
+from core.extras.convert.source_lines import SourceLine, Statement, Word, read_words, split_lines
+from core.extras.convert.source_options import Control
+
+MOST_LINES = 300_000
+_DEEPEST = 16
+_MACRO = re.compile(r"\s*(IF|WHILE|GOTO|END|DO|THEN)\s*(?=[\[#\d])", re.IGNORECASE)
+_ARGUMENTS = {letter: str(n) for n, letter in enumerate("ABCIJK", start=1)} | {
+    letter: str(n)
+    for letter, n in zip(
+        "DEFHMQRSTUVWXYZ", (7, 8, 9, 11, 13, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26), strict=True
+    )
+}
+
+
+_JUMPS: Mapping[str, tuple[bool, tuple[str, ...], int]] = {
+    "sub": (False, ("endsub",), 1),
+    "else": (False, ("endif",), 1),
+    "elseif": (False, ("endif",), 1),
+    "endwhile": (True, ("while",), 0),
+    "endrepeat": (True, ("repeat",), 0),
+    "break": (False, ("endwhile", "endrepeat", "while"), 1),
+    "continue": (False, ("endwhile", "endrepeat", "while"), 0),
+}
+"""O words that jump: whether backward, to which of these keywords, and how many lines after it."""
+_KEYWORDS = frozenset({"if", "while", "repeat", "call"})
+
+
+class _Return(NamedTuple):
+    at: int
+    left: int  # number of further calls
+    begin: int
+    locals: dict[str, float]
+
+
+class Flow:
+    """The statements of a source program in the order of execution.
+
+    ``at`` is the index of the next line.
+    """
+
+    def __init__(self, texts: Sequence[str], control: Control) -> None:
+        self.lines: list[SourceLine] = split_lines(texts, control)
+        self.variables: Variables = {}
+        self.at = 0
+        self.ended = False
+        self.repeats = 0  # line of the M99 that repeats the main program
+        self._control = control
+        self._calls: list[_Return] = []
+        self._left = MOST_LINES
+        self._loops: dict[int, int] = {}  # repeat loops: line index and passes left
+
+    def statements(self) -> Iterator[Statement]:
+        """Yield the statements in the order of execution. Raises ProgramError."""
+        while self.at < len(self.lines) and not self.ended:
+            line = self.lines[self.at]
+            self.at += 1
+            self._left -= 1
+            if self._left < 0:
+                raise refuse(line.number, 1, "endless", most=MOST_LINES)
+            if line.key:
+                self._o_word(line)
+            elif _MACRO.match(line.code, line.start):
+                yield from self._macro(line)
+            else:
+                yield from self._statement(line)
+
+    def _statement(self, line: SourceLine) -> Iterator[Statement]:
+        statement = read_words(line, self.variables)
+        if statement.has_g(65):
+            self._call_macro(statement)
+            return
+        m = next((each for each in statement.codes("M") if each.value in {97, 98, 99}), None)
+        if m is None:
+            yield statement
+            return
+        rest = tuple(each for each in statement.words if each is not m and each.letter not in "PLQ")
+        if rest:
+            yield Statement(statement.line, rest, statement.comment)
+        if m.value == 99:
+            self._return(statement, line)
+        else:
+            self._call_program(statement, m)
+
+    # --- subprograms
+
+    def _call_program(self, statement: Statement, m: Word) -> None:
+        p, loops = statement.word("P"), statement.word("L")
+        if p is None:
+            raise refuse(m.line, m.column, "subprogram", word=m.text)
+        number, count = round(p.value), 1 if loops is None else round(loops.value)
+        if loops is None and number > 9999 and self._control.is_fanuc:
+            count, number = divmod(number, 10000)
+        self._enter(p, self._program(number) if m.value == 98 else self._block(number, p) - 1, count, {})
+
+    def _call_macro(self, statement: Statement) -> None:
+        p = statement.word("P")
+        if p is None:
+            raise refuse(statement.line, 1, "subprogram", word="G65")
+        passed = {
+            _ARGUMENTS[word.letter]: word.value for word in statement.words if word.letter in _ARGUMENTS
+        }
+        loops = statement.word("L")
+        self._enter(p, self._program(round(p.value)), 1 if loops is None else round(loops.value), passed)
+
+    def _enter(self, p: Word, begin: int | None, count: int, passed: dict[str, float]) -> None:
+        if begin is None or len(self._calls) >= _DEEPEST:
+            raise refuse(p.line, p.column, "subprogram", word=p.text)
+        if count < 1:
+            return
+        saved = {key: value for key, value in self.variables.items() if _is_local(key)} if passed else {}
+        if passed:
+            for key in saved:
+                del self.variables[key]
+            self.variables.update(passed)
+        self._calls.append(_Return(self.at, count - 1, begin + 1, saved))
+        self.at = begin + 1
+
+    def _program(self, number: int) -> int | None:
+        return next(
+            (
+                index
+                for index, each in enumerate(self.lines)
+                if each.o.isdecimal() and int(each.o) == number and not each.key
+            ),
+            None,
+        )
+
+    def _return(self, statement: Statement, line: SourceLine) -> None:
+        if not self._calls:
+            self.ended, self.repeats = True, line.number
+            return
+        call = self._calls.pop()
+        if call.left:
+            self._calls.append(call._replace(left=call.left - 1))
+            self.at = call.begin
+            return
+        self.at = call.at
+        for key in [key for key in self.variables if _is_local(key) and call.locals]:
+            del self.variables[key]
+        self.variables.update(call.locals)
+        p = statement.word("P")
+        if p is not None:
+            self.at = self._block(round(p.value), p)
+
+    def _block(self, number: float, word: Word) -> int:
+        after = range(self.at, len(self.lines))
+        for index in (*after, *range(self.at)):
+            if self.lines[index].n == number:
+                return int(index)
+        raise refuse(word.line, word.column, "label", word=word.text)
+
+    def contour(self, first: float, last: float, near: int) -> tuple[list[Statement], int]:
+        """Return the statements of the blocks N``first`` to N``last``, and the index after them.
+
+        The blocks are searched from line ``near`` on, then from the start of the file. Raises ProgramError.
+        """
+        order = (*range(near, len(self.lines)), *range(near))
+        begin = next((index for index in order if self.lines[index].n == first), None)
+        end = None
+        if begin is not None:
+            end = next((k for k in range(begin, len(self.lines)) if self.lines[k].n == last), None)
+        if begin is None or end is None:
+            raise refuse(near, 1, "cycle-contour", first=f"{first:g}", last=f"{last:g}")
+        found = [read_words(line, self.variables) for line in self.lines[begin : end + 1]]
+        return found, end + 1
+
+    # --- macros of Fanuc
+
+    def _macro(self, line: SourceLine) -> Iterator[Statement]:
+        reader = Expression(line.number, line.code, self.variables, line.start)
+        if reader.take("IF"):
+            if not reader.bracket():
+                return
+            if reader.take("THEN"):
+                yield from self._statement(line._replace(start=reader.at))
+                return
+        if reader.take("WHILE"):
+            if not reader.bracket():
+                self.at = self._end_of(line, reader) + 1
+            return
+        if reader.take("GOTO"):
+            begin = reader.at
+            value, _ = reader.value()
+            text = line.code[begin : reader.at].strip()
+            self.at = self._block(value, Word("N", value, False, line.number, begin + 1, text))
+            return
+        if reader.take("END"):
+            self.at = self._begin_of(line)
+            return
+        if reader.take("DO"):
+            return
+        raise refuse(line.number, line.start + 1, "bad-word", text=line.code[line.start :].strip())
+
+    def _end_of(self, line: SourceLine, reader: Expression) -> int:
+        if not reader.take("DO"):
+            raise refuse(line.number, reader.at + 1, "bad-word", text=line.code.strip())
+        number = line.code[reader.at :].strip()
+        for index in range(self.at, len(self.lines)):
+            if re.fullmatch(
+                rf"END\s*{number}", self.lines[index].code[self.lines[index].start :].strip(), re.IGNORECASE
+            ):
+                return index
+        raise refuse(line.number, reader.at + 1, "label", word=f"END{number}")
+
+    def _begin_of(self, line: SourceLine) -> int:
+        number = line.code[line.start :].strip()[3:].strip()
+        for index in range(self.at - 1, -1, -1):
+            if re.search(rf"DO\s*{number}\s*$", self.lines[index].code, re.IGNORECASE):
+                return index
+        raise refuse(line.number, 1, "label", word=f"DO{number}")
+
+    # --- O words of LinuxCNC
+
+    def _o_word(self, line: SourceLine) -> None:
+        reader = Expression(line.number, line.code, self.variables, line.start)
+        jump = _JUMPS.get(line.key)
+        if jump is not None:
+            back, keys, beyond = jump
+            self.at = (self._find_back if back else self._find)(line, keys) + beyond
+        elif line.key in {"endsub", "return"}:
+            self._leave()
+        elif line.key in _KEYWORDS:
+            getattr(self, f"_{line.key}")(line, reader)
+        elif line.key not in {"endif", "do"}:
+            raise refuse(line.number, line.start + 1, "bad-word", text=line.code.strip())
+
+    def _while(self, line: SourceLine, reader: Expression) -> None:
+        is_true = reader.bracket()
+        if self._is_do_end(line):
+            self.at = self._find_back(line, ("do",)) + 1 if is_true else self.at
+        elif not is_true:
+            self.at = self._find(line, ("endwhile",)) + 1
+
+    def _if(self, line: SourceLine, reader: Expression) -> None:
+        """Continue after the first true IF or ELSEIF; otherwise after ELSE or ENDIF."""
+        while not reader.bracket():
+            index = self._find(line, ("elseif", "else", "endif"))
+            self.at = index + 1
+            line = self.lines[index]
+            if line.key != "elseif":
+                return
+            reader = Expression(line.number, line.code, self.variables, line.start)
+
+    def _is_do_end(self, line: SourceLine) -> bool:
+        return any(each.o == line.o and each.key == "do" for each in self.lines[: line.number - 1])
+
+    def _repeat(self, line: SourceLine, reader: Expression) -> None:
+        index = line.number - 1
+        left = self._loops.pop(index, None)
+        left = round(reader.bracket()) if left is None else left
+        if left <= 0:
+            self.at = self._find(line, ("endrepeat",)) + 1
+        else:
+            self._loops[index] = left - 1
+
+    def _call(self, line: SourceLine, reader: Expression) -> None:
+        begin = next((k for k, each in enumerate(self.lines) if each.o == line.o and each.key == "sub"), None)
+        passed: dict[str, float] = {}
+        while reader.peek() == "[":
+            passed[str(len(passed) + 1)] = reader.bracket()
+        name = Word("O", 0, True, line.number, line.start, f"O{line.o}")
+        passed |= {str(n): 0.0 for n in range(len(passed) + 1, 31)}
+        self._enter(name, begin, 1, passed)
+
+    def _leave(self) -> None:
+        if not self._calls:
+            self.ended = True
+            return
+        call = self._calls.pop()
+        self.at = call.at
+        for key in [key for key in self.variables if _is_local(key)]:
+            del self.variables[key]
+        self.variables.update(call.locals)
+
+    def _find(self, line: SourceLine, keys: Sequence[str]) -> int:
+        for index in range(line.number, len(self.lines)):
+            if self.lines[index].o == line.o and self.lines[index].key in keys:
+                return index
+        raise refuse(line.number, 1, "label", word=f"O{line.o} {keys[0].upper()}")
+
+    def _find_back(self, line: SourceLine, keys: Sequence[str]) -> int:
+        for index in range(line.number - 2, -1, -1):
+            if self.lines[index].o == line.o and self.lines[index].key in keys:
+                return index
+        raise refuse(line.number, 1, "label", word=f"O{line.o} {keys[0].upper()}")
+
+
+def _is_local(key: str) -> bool:
+    """Return whether a variable belongs to one call: #1 to #33, or a name without an underscore."""
+    return (key.isdecimal() and int(key) <= 33) or (key.startswith("<") and not key.startswith("<_"))

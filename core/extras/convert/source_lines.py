@@ -1,0 +1,146 @@
+"""Lines of a source program: comments, block numbers, words and assignments."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from core.extras.convert.expressions import Expression, Variables
+from core.extras.convert.reasons import refuse
+from core.extras.convert.source_options import Control
+
+_BLOCK = re.compile(r"\s*(?P<delete>/\d?)?\s*(?:N\s*(?P<n>\d+(?:\.\d+)?))?\s*", re.IGNORECASE)
+_PROGRAM = re.compile(r"\s*[O:]\s*(?P<o>\d+)(?!\d)\s*(?P<rest>.*)", re.IGNORECASE)
+_O_WORD = re.compile(r"\s*O\s*(?P<o>\d+|<[^>]+>)\s*(?P<key>[A-Za-z]+)(?P<rest>.*)", re.IGNORECASE)
+
+
+class SourceLine(NamedTuple):
+    """One line of the source.
+
+    ``code`` is the text without comments, with blanks in their place. ``n`` is the block number, or 0. ``o``
+    and ``key`` are the number or name and the keyword of an O word, and ``start`` is the index after them.
+    """
+
+    number: int
+    code: str
+    comment: str
+    text: str
+    n: float = 0
+    o: str = ""
+    key: str = ""
+    start: int = 0
+    deleted: bool = False
+
+
+class Word(NamedTuple):
+    """A word of a line. ``has_point`` is True unless the value is a number without a decimal point."""
+
+    letter: str
+    value: float
+    has_point: bool
+    line: int
+    column: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """The words of a line with their values, in their order."""
+
+    line: int
+    words: tuple[Word, ...]
+    comment: str = ""
+
+    def word(self, letter: str) -> Word | None:
+        """Return the last word with this letter, or None."""
+        return next((each for each in reversed(self.words) if each.letter == letter), None)
+
+    def codes(self, letter: str) -> Sequence[Word]:
+        """Return the words with this letter."""
+        return [each for each in self.words if each.letter == letter]
+
+    def has_g(self, *codes: float) -> bool:
+        """Return whether the line contains one of these G codes."""
+        return any(each.letter == "G" and each.value in codes for each in self.words)
+
+
+def split_lines(texts: Sequence[str], control: Control) -> list[SourceLine]:
+    """Return the lines of a source program. Raises ProgramError for a comment without an end."""
+    return [_line(number, text, control) for number, text in enumerate(texts, start=1)]
+
+
+def _line(number: int, text: str, control: Control) -> SourceLine:
+    code, comment = _without_comments(number, text)
+    if code.lstrip().startswith("%"):
+        return SourceLine(number, "", comment, text)
+    head = _BLOCK.match(code)
+    assert head is not None
+    n, deleted, start = float(head["n"] or 0), head["delete"] is not None, head.end()
+    o_word = _O_WORD.match(code, start)
+    if control is Control.LINUXCNC and o_word is not None:
+        return SourceLine(
+            number,
+            code,
+            comment,
+            text,
+            n,
+            o_word["o"].lower(),
+            o_word["key"].lower(),
+            o_word.start("rest"),
+            deleted,
+        )
+    program = _PROGRAM.match(code, start)
+    if program is not None:
+        return SourceLine(number, code, comment, text, n, program["o"], "", program.start("rest"), deleted)
+    return SourceLine(number, code, comment, text, n, start=start, deleted=deleted)
+
+
+def _without_comments(number: int, text: str) -> tuple[str, str]:
+    code: list[str] = []
+    comments: list[str] = []
+    at = 0
+    while at < len(text):
+        if text[at] == "(":
+            end = text.find(")", at)
+            if end < 0:
+                raise refuse(number, at + 1, "parentheses")
+            comments.append(text[at + 1 : end].strip())
+            code.append(" " * (end + 1 - at))
+            at = end + 1
+        elif text[at] == ";":
+            comments.append(text[at + 1 :].strip())
+            break
+        else:
+            code.append(text[at])
+            at += 1
+    return "".join(code).rstrip(), " ".join(filter(None, comments))
+
+
+def read_words(line: SourceLine, variables: Variables) -> Statement:
+    """Return the words of a line and assign its variables. Raises ProgramError."""
+    reader = Expression(line.number, line.code, variables, line.start)
+    assigned: dict[str, float] = {}
+    words = tuple(_words(reader, assigned))
+    variables.update(assigned)
+    return Statement(line.number, words, line.comment)
+
+
+def _words(reader: Expression, assigned: dict[str, float]) -> Iterator[Word]:
+    while reader.peek():
+        begin = reader.at
+        if reader.peek() == "#":
+            key = reader.variable()
+            if not reader.take("="):
+                raise refuse(reader.line, begin + 1, "bad-word", text=reader.text[begin : begin + 24])
+            assigned[key] = reader.whole()
+            continue
+        corner = reader.take(",")
+        letter = reader.peek().upper()
+        if not letter.isalpha():
+            raise refuse(reader.line, begin + 1, "bad-word", text=reader.text[begin : begin + 24])
+        reader.at += 1
+        value, has_point = reader.value()
+        text = reader.text[begin : reader.at].strip()
+        yield Word(("," if corner else "") + letter, value, has_point, reader.line, begin + 1, text)

@@ -1,0 +1,49 @@
+"""Controls whose programs can be converted, and the options of a conversion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Control(StrEnum):
+    """Control for which a program was written. The values are those of ``--from``."""
+
+    FANUC_A = "fanuc-a"
+    FANUC_B = "fanuc-b"
+    HAAS = "haas"
+    LINUXCNC = "linuxcnc"
+    MACH = "mach"
+
+    @property
+    def has_system_a(self) -> bool:
+        """Whether the control uses G-code system A: U and W are increments, and G90 is a cycle."""
+        return self in {Control.FANUC_A, Control.HAAS}
+
+    @property
+    def is_fanuc(self) -> bool:
+        """Whether words, cycles and macros are those of Fanuc controls."""
+        return self not in {Control.LINUXCNC, Control.MACH}
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Facts about a source program that its text does not contain.
+
+    ``no_point`` is the value of 1 in a length without a decimal point: 0 is not specified, 1 is a whole unit,
+    and 0.001 is the least increment (0.001 mm or 0.0001 in). ``metric`` is the unit of a program that selects
+    none, and ``diameter`` the meaning of X in such a program; None is not specified. ``front`` means that
+    G02 and G03 are seen with X+ toward the operator. ``skipped_m`` are M codes to leave out.
+    """
+
+    control: Control
+    no_point: float = 0.0
+    metric: bool | None = None
+    diameter: bool | None = None
+    front: bool = False
+    skipped_m: frozenset[int] = frozenset()
+    comments: bool = True
+    rapid: float = 7620.0  # mm/min
+    most_rpm: float = 3500.0
+    most_feed: float = 7620.0  # mm/min
+    m_codes: frozenset[int] = frozenset()  # M codes that the machine file of the target defines

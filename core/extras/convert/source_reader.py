@@ -1,0 +1,417 @@
+"""Reader of a source program: words to modal state to steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from core.extras.convert.path_steps import Kind, Step
+from core.extras.convert.reasons import refuse
+from core.extras.convert.source_arcs import arc
+from core.extras.convert.source_corners import Corner, add_corner
+from core.extras.convert.source_flow import Flow
+from core.extras.convert.source_lines import Statement, Word
+from core.extras.convert.source_options import Control, Options
+from core.extras.convert.source_state import SourceState
+from core.extras.convert.thread_cycles import single_pass
+from core.language.diagnostics import Diagnostic, ProgramError
+
+_IDLE = frozenset(
+    {9, 17, 18, 40, 43, 49, 61, 61.1, 64, 69, 80, 91.1, 90.1, 53.1, 15, 50.1, 13.1, 113, 67, 23, 25, 26, 22}
+)
+_SILENT = frozenset({17, 18, 40, 49, 80, 69, 91.1, 15, 67, 43})  # the state that a lathe program has anyway
+_LEFT_OUT_M = frozenset({6, 7, 17, 18, 23, 24, 40, 41, 42, 43, 44, 45, 46, 47, 48, 49})
+_SILENT_M = frozenset({6, 7})
+_C_AXIS = frozenset({7.1, 12.1, 107, 112, 12, 16, 12.2})
+_C_WORDS = "CHABYV"
+
+
+class Reader:
+    """One pass through a source program. ``state.steps`` and ``state.warnings`` are its results."""
+
+    def __init__(self, texts: Sequence[str], options: Options) -> None:
+        self.flow = Flow(texts, options.control)
+        self.state = SourceState(options, metric=options.metric)
+        self._corner: Corner | None = None
+        self._nose_ends = False
+        control = options.control
+        self.state.per_rev = control.is_fanuc
+        self.state.diameter = (
+            options.diameter if options.diameter is not None else control is not Control.LINUXCNC
+        )
+
+    def read(self) -> None:
+        """Read the whole program. Raises ProgramError at the first line that cannot be converted."""
+        for statement in self.flow.statements():
+            self.execute(statement)
+        if self.flow.repeats:
+            word = Word("M", 99, False, self.flow.repeats, 1, "M99")
+            self.state.warn(word, "repeat")
+        if not any(each.kind is Kind.END for each in self.state.steps):
+            line = self.state.steps[-1].line if self.state.steps else 1
+            self.state.add(Step(Kind.END, line, number=30))
+
+    # --- one statement
+
+    def execute(self, statement: Statement) -> None:
+        """Execute the words of one line. Raises ProgramError."""
+        state = self.state
+        if statement.comment:
+            state.comment = f"{state.comment} {statement.comment}".strip()
+        if not statement.words:
+            return
+        self._modes(statement)
+        self._feed(statement)
+        self._tool(statement)
+        self._spindle(statement)
+        self._start_codes(statement)
+        self._motion(statement)
+        self._stop_codes(statement)
+
+    def _modes(self, statement: Statement) -> None:
+        for word in statement.codes("G"):
+            if not self._numbers_mode(word) and not self._feed_mode(word):
+                self._other_mode(word)
+
+    def _numbers_mode(self, word: Word) -> bool:
+        """Execute a code of the unit, of X or of increments; return whether the word is such a code."""
+        state, fanuc, code = self.state, self.state.control.is_fanuc, word.value
+        if code in {20, 21} or (code in {70, 71} and not fanuc):
+            state.metric = code in {21, 71}
+        elif code in {7, 8} and not fanuc:
+            state.diameter = code == 7
+        elif code in {90, 91} and not state.control.has_system_a:
+            state.absolute = code == 90
+        else:
+            return False
+        return True
+
+    def _feed_mode(self, word: Word) -> bool:
+        """Execute a code of the feed mode; return whether the word is such a code."""
+        state, code = self.state, word.value
+        if code in self._feed_codes():
+            per_rev = code in {99, 95}
+            state.feed = None if per_rev != state.per_rev else state.feed
+            state.per_rev = per_rev
+        elif code == 93 and not state.control.is_fanuc:
+            raise refuse(word.line, word.column, "inverse-time")
+        elif code in {98, 99} and not state.control.has_system_a:
+            state.returns_to_r = code == 99
+        else:
+            return False
+        return True
+
+    def _other_mode(self, word: Word) -> None:
+        state, code = self.state, word.value
+        if 54 <= code < 60:
+            if state.work_offset not in {0, code} or code != int(code):
+                raise refuse(word.line, word.column, "work-offset", word=word.text)
+            state.work_offset = code
+        elif code in _C_AXIS:
+            raise refuse(word.line, word.column, "c-axis", word=word.text)
+        elif code in _IDLE and code not in _SILENT:
+            state.warn(word, "left-out", word=word.text)
+
+    def _feed_codes(self) -> frozenset[int]:
+        return frozenset({98, 99}) if self.state.control.has_system_a else frozenset({94, 95})
+
+    def _feed(self, statement: Statement) -> None:
+        state = self.state
+        word = statement.word("F")
+        if (
+            word is None
+            or statement.has_g(32, 33, 76, 34)
+            or (state.motion in {32, 33} and not statement.codes("G"))
+        ):
+            return
+        if self._is_thread_cycle(statement):
+            return
+        if state.per_rev and not word.has_point and state.control.is_fanuc and state.options.no_point != 1:
+            raise refuse(word.line, word.column, "feed-no-point", word=word.text)
+        state.feed = word.value * state.unit(word)
+        most = state.options.most_feed
+        if not state.per_rev and state.feed > most:
+            state.warn(word, "feed-limited", word=word.text)
+            state.feed = most
+
+    def _is_thread_cycle(self, statement: Statement) -> bool:
+        code = 92 if self.state.control.has_system_a else 78
+        if not self.state.control.is_fanuc:
+            return False
+        return statement.has_g(code) or (self.state.motion == 92.5 and not statement.codes("G"))
+
+    def _tool(self, statement: Statement) -> None:
+        state, word = self.state, statement.word("T")
+        if word is None:
+            return
+        number = offset = round(word.value)
+        if number > 99:
+            number, offset = divmod(number, 100)
+        if not number or not offset:
+            state.warn(word, "offset-cancelled", word=word.text)
+            if number in {0, state.tool}:
+                return
+            offset = number
+        if not 1 <= offset <= 32:
+            raise refuse(word.line, word.column, "tool-number", word=word.text)
+        if offset != state.tool:
+            state.tool, state.x, state.z = offset, None, None
+            state.add(Step(Kind.TOOL, statement.line, number=offset))
+
+    def _spindle(self, statement: Statement) -> None:
+        state = self.state
+        spindle = state.spindle
+        limit = statement.has_g(50) or (statement.has_g(92) and statement.word("S") is not None)
+        word = statement.word("S")
+        for code in statement.codes("G"):
+            if code.value in {96, 97}:
+                spindle = replace(spindle, css=code.value == 96)
+        if word is not None:
+            if limit:
+                spindle = replace(spindle, most=self._rpm(word))
+            else:
+                spindle = replace(spindle, speed=word.value if spindle.css else self._rpm(word))
+        most = statement.word("D")
+        if most is not None and statement.has_g(96) and not state.control.is_fanuc:
+            spindle = replace(spindle, most=self._rpm(most))
+        for code in statement.codes("M"):
+            if code.value in {3, 4}:
+                spindle = replace(spindle, direction=1 if code.value == 3 else -1)
+        if spindle != state.spindle:
+            state.spindle = spindle
+            if spindle.direction:
+                state.add(Step(Kind.SPINDLE, statement.line, spindle=spindle))
+
+    def _rpm(self, word: Word) -> float:
+        most = self.state.options.most_rpm
+        if word.value > most:
+            self.state.warn(word, "speed-limited", word=word.text)
+        return min(word.value, most)
+
+    # --- M codes
+
+    def _start_codes(self, statement: Statement) -> None:
+        for word in statement.codes("M"):
+            if word.value in {8, 7}:
+                self.state.add(Step(Kind.M, statement.line, number=8))
+            elif word.value not in {0, 1, 2, 3, 4, 5, 9, 30, 60}:
+                self._machine_code(word)
+
+    def _machine_code(self, word: Word) -> None:
+        options = self.state.options
+        code = word.value
+        if code in options.skipped_m or code in _LEFT_OUT_M:
+            if code not in _SILENT_M:
+                self.state.warn(word, "left-out", word=word.text)
+        elif code in options.m_codes:
+            self.state.add(Step(Kind.M, word.line, number=code))
+        else:
+            raise refuse(word.line, word.column, "m-code", word=word.text, number=f"{code:g}")
+
+    def _stop_codes(self, statement: Statement) -> None:
+        state = self.state
+        for word in statement.codes("M"):
+            if word.value in {9, 0, 1, 60}:
+                state.add(Step(Kind.M, statement.line, number=0 if word.value == 60 else word.value))
+            elif word.value == 5:
+                if state.spindle.direction:
+                    state.spindle = replace(state.spindle, direction=0)
+                    state.add(Step(Kind.SPINDLE, statement.line, spindle=state.spindle))
+            elif word.value in {2, 30}:
+                state.add(Step(Kind.END, statement.line, number=word.value))
+                self.flow.ended = True
+
+    # --- moves
+
+    def _motion(self, statement: Statement) -> None:
+        state = self.state
+        for word in statement.codes("G"):
+            if self._one_shot(statement, word):
+                return
+        motion = [each for each in statement.codes("G") if self._is_motion(each)]
+        if motion:
+            state.motion = motion[-1].value
+        self._nose_codes(statement)
+        axes = [
+            each for each in statement.words if each.letter in ("XZUW" if state.control.is_fanuc else "XZ")
+        ]
+        self._check_letters(statement)
+        if not axes:
+            return
+        self._move(statement, motion[-1] if motion else axes[0])
+        if self._nose_ends:
+            self._nose_ends = False
+            state.add(Step(Kind.NOSE, statement.line, number=40))
+
+    def _is_motion(self, word: Word) -> bool:
+        if word.value in {0, 1, 2, 3, 33} or (word.value == 32 and self.state.control.is_fanuc):
+            return True
+        known = (
+            word.value in _IDLE
+            or word.value in self._feed_codes()
+            or word.value in {20, 21, 96, 97, 41, 42, 90, 91, 98, 99}
+            or 54 <= word.value < 60
+            or (not self.state.control.is_fanuc and word.value in {7, 8, 70, 71})
+        )
+        if not known:
+            raise refuse(word.line, word.column, "code-unknown", word=word.text)
+        return False
+
+    def _move(self, statement: Statement, code: Word) -> None:
+        state = self.state
+        if state.motion in {2, 3}:
+            if self._corner is not None:
+                raise refuse(
+                    self._corner.word.line, self._corner.word.column, "corner", word=self._corner.word.text
+                )
+            arc(state, statement, code)
+            return
+        x, z = state.target(statement)
+        corner, self._corner = self._corner, None
+        if corner is not None:
+            if x is None or z is None or state.motion != 1:
+                raise refuse(corner.word.line, corner.word.column, "corner", word=corner.word.text)
+            add_corner(state, corner, x, z)
+        if state.motion in {32, 33}:
+            single_pass(state, statement, code)
+            return
+        if state.motion == 0:
+            state.rapid(statement.line, x, z)
+            return
+        start = state.here(code)
+        state.cut(code, x, z)
+        word = self._corner_word(statement)
+        if word is not None:
+            self._corner = Corner(word, abs(state.length(word)), start)
+
+    def _corner_word(self, statement: Statement) -> Word | None:
+        if not self.state.control.is_fanuc:
+            return None
+        return next(
+            (each for each in statement.words if each.letter in {",C", ",R", "C", "R", "I", "K"}), None
+        )
+
+    def _check_letters(self, statement: Statement) -> None:
+        """Refuse words that this reader does not use. Raises ProgramError."""
+        allowed = "GMXZFSTNUW" if self.state.control.is_fanuc else "GMXZFSTN"
+        if self.state.motion in {2, 3}:
+            allowed += "RIK"
+        elif self.state.motion in {32, 33}:
+            allowed += "EQ" if self.state.control.is_fanuc else "K"
+        for word in statement.words:
+            if word.letter in allowed:
+                continue
+            if word.letter == "D" and statement.has_g(96, 41, 42):
+                continue
+            if word.letter in "PQ" and statement.has_g(64):
+                continue
+            if word.letter == "H" and statement.has_g(43):
+                continue
+            if self.state.motion == 1 and self._corner_word(statement) is word:
+                continue
+            code = "c-axis" if word.letter in _C_WORDS else "code-unknown"
+            raise refuse(word.line, word.column, code, word=word.text)
+
+    def _nose_codes(self, statement: Statement) -> None:
+        state = self.state
+        for word in statement.codes("G"):
+            if word.value in {41, 42} and state.nose != word.value:
+                # OmniTurn sees X+ downward, so that left and right are exchanged.
+                code = 83 - word.value if not state.options.front else word.value
+                state.nose = round(word.value)
+                state.add(Step(Kind.NOSE, statement.line, number=code))
+                state.warn(word, "nose-offset", number=state.tool or 1)
+            elif word.value == 40 and state.nose != 40:
+                state.nose = 40
+                self._nose_ends = True
+
+    # --- codes that act only on their line
+
+    def _one_shot(self, statement: Statement, word: Word) -> bool:
+        """Execute a code that uses the axis words of its line; return whether the word is such a code."""
+        code, control = word.value, self.state.control
+        if code == 4:
+            self._dwell(statement, word)
+        elif code in {28, 30}:
+            self._home(statement, word)
+        elif code == 53:
+            self._machine_position(statement, word)
+        elif (code == 50 and control.is_fanuc) or (code == 92 and not control.has_system_a):
+            self._preset(statement, word)
+        else:
+            return False
+        return True
+
+    def _dwell(self, statement: Statement, word: Word) -> None:
+        time = next((each for letter in "PXUF" if (each := statement.word(letter))), None)
+        if time is None:
+            raise refuse(word.line, word.column, "cycle-word", word="P")
+        seconds = time.value
+        if self.state.control.is_fanuc and not time.has_point:
+            seconds = seconds / 1000.0
+        if seconds > 0:
+            self.state.add(Step(Kind.DWELL, statement.line, number=max(seconds, 0.1)))
+
+    def _home(self, statement: Statement, word: Word) -> None:
+        state = self.state
+        letters = "XZUW" if state.control.is_fanuc else "XZ"
+        self._only(statement, "GMST" + letters)
+        x_word, z_word = (
+            next((each for each in statement.words if each.letter in pair), None) for pair in ("XU", "ZW")
+        )
+        if x_word is None and z_word is None and state.control.is_fanuc:
+            raise refuse(word.line, word.column, "cycle-word", word="U0 W0")
+        through = state.target(statement)
+        if through != (state.x, state.z):
+            state.rapid(statement.line, *through)
+        both = x_word is None and z_word is None
+        self._go_home(statement, x=both or x_word is not None, z=both or z_word is not None)
+
+    def _machine_position(self, statement: Statement, word: Word) -> None:
+        self._only(statement, "GMST" + "XZ")
+        x, z = statement.word("X"), statement.word("Z")
+        for each in (x, z):
+            if each is not None and each.value:
+                self.state.warn(word, "home-position", word=f"{word.text} {each.text}")
+        if x is not None or z is not None:
+            self._go_home(statement, x=x is not None, z=z is not None)
+
+    def _only(self, statement: Statement, letters: str) -> None:
+        for each in statement.words:
+            if each.letter not in letters:
+                code = "c-axis" if each.letter in _C_WORDS else "code-unknown"
+                raise refuse(each.line, each.column, code, word=each.text)
+
+    def _go_home(self, statement: Statement, *, x: bool, z: bool) -> None:
+        state = self.state
+        if self._nose_ends or state.nose != 40:
+            self._nose_ends, state.nose = False, 40
+            state.add(Step(Kind.NOSE, statement.line, number=40))
+        state.add(Step(Kind.HOME, statement.line, 0.0 if x else None, 0.0 if z else None))
+        state.x, state.z = None if x else state.x, None if z else state.z
+
+    def _preset(self, statement: Statement, word: Word) -> None:
+        """Execute G50 or G92: a maximum speed, a preset of the position, or both."""
+        state = self.state
+        self._only(statement, "GMSTXZ" + ("UW" if state.control.is_fanuc else ""))
+        if statement.word("X") is None and statement.word("Z") is None:
+            if statement.word("S") is None:
+                raise refuse(word.line, word.column, "code-unknown", word=word.text)
+            return
+        x, z = statement.word("X"), statement.word("Z")
+        state.x = state.across(x) if x is not None else state.x
+        state.z = state.length(z) if z is not None else state.z
+        state.add(Step(Kind.PRESET, statement.line, state.x, state.z))
+
+
+def read_source(texts: Sequence[str], options: Options) -> tuple[SourceState, list[Diagnostic]]:
+    """Return the state after a pass through the source, and its findings; an error is the last one."""
+    try:
+        reader = Reader(texts, options)
+    except ProgramError as error:
+        return SourceState(options), [error.diagnostic]
+    try:
+        reader.read()
+    except ProgramError as error:
+        return reader.state, [*reader.state.warnings, error.diagnostic]
+    return reader.state, reader.state.warnings

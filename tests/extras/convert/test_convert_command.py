@@ -1,0 +1,90 @@
+"""The command ``turndesk convert``: options, output and errors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.extras.convert import convert_command
+from tests.cli.conftest import Turndesk
+from tests.cli.json_output import declared_alone
+
+PART = "%\nO1\nG20G99\nT0101\nG97S500M03\nG00X1.Z.1\nG01Z-1.F.01\nM41\nM30\n%\n"
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    path = tmp_path / "part.txt"
+    path.write_text(PART)
+    return path
+
+
+def test_the_program_is_written_once_and_can_be_proved(
+    turndesk: Turndesk, part: Path, tmp_path: Path
+) -> None:
+    made = tmp_path / "part.nc"
+    assert turndesk("convert", part, "--out", made).status == 0
+    assert made.read_text().splitlines()[0] == "G90G94F300G70G72(L4)"
+    assert turndesk("prove", made).status == 0
+    again = turndesk("convert", part, "--out", made)
+    assert (again.status, again.code) == (2, "file-exists")
+
+
+def test_nothing_is_written_if_a_line_cannot_be_converted(
+    turndesk: Turndesk, part: Path, tmp_path: Path
+) -> None:
+    part.write_text(PART.replace("M41", "M77"))
+    made = tmp_path / "part.nc"
+    told = turndesk("convert", part, "--out", made)
+    assert told.status == 1
+    assert f"{part}:8:1: error" in told.err
+    assert not made.exists()
+    assert turndesk("convert", part, "--skip-m", "77,78", "--out", made).status == 0
+
+
+def test_the_keys_of_json_are_declared(turndesk: Turndesk, part: Path) -> None:
+    (told,) = turndesk("convert", part, "--json").lines
+    assert [each["code"] for each in told["findings"]] == ["left-out"]
+    assert told["from"] == "fanuc-a"
+    declared_alone([told], convert_command.CONVERT.keys)
+
+
+def test_options_about_the_source_act(turndesk: Turndesk, part: Path) -> None:
+    part.write_text("G99\nT0101\nG97S500M03\nG00X1000Z100\nG01X2.Z-1.F.01\nG02X3.Z-1.5I0K-.5\nM30\n")
+    words = ("--from", "fanuc-b", "--to", "omniturn", "--no-point", "1", "--unit", "mm", "--x", "radius")
+    told = turndesk(
+        "convert", part, *words, "--tool-post", "front", "--no-comments", "--machine", "gt75-bench"
+    )
+    assert told.status in {0, 1}
+    told = turndesk("convert", part, *words, "--no-comments")
+    assert told.status in {0, 1}
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (("--skip-m", "M4x"), ""),
+        (("--from", "okuma"), ""),
+        (("--to", "klartext"), ""),
+        (("--no-point", "2"), ""),
+        (("--machine", "missing.toml"), "unreadable"),
+        (("--out", "missing/part.nc"), "no-folder"),
+    ],
+)
+def test_a_wrong_option_is_rejected(
+    turndesk: Turndesk, part: Path, words: tuple[str, ...], code: str
+) -> None:
+    told = turndesk("convert", part, *words)
+    assert told.status == 2
+    assert not code or told.code
+
+
+def test_a_program_that_is_not_recognized_needs_its_control(turndesk: Turndesk, part: Path) -> None:
+    part.write_text("G90\nX1\nM30\n")
+    told = turndesk("convert", part)
+    assert (told.status, told.code) == (2, "control-unknown")
+
+
+def test_a_missing_file_is_named(turndesk: Turndesk, tmp_path: Path) -> None:
+    assert turndesk("convert", tmp_path / "missing.nc").status == 2
