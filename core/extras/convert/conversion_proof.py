@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from core.extras.convert.path_steps import MOVES, Kind, Step
+from core.extras.convert.path_steps import MOVES, Kind, Spindle, Step, is_same_run
 from core.extras.convert.reasons import refuse
 from core.interpreter.dialects import interpretation
 from core.interpreter.shared import actions
@@ -271,13 +271,16 @@ def _is_idle(block: Block) -> bool:
 
 def _known(steps: Sequence[Step]) -> Iterator[Step]:
     """Yield the steps that blocks must match: without nose codes, presets and moves of unknown end."""
+    spindle = Spindle()
     for step in steps:
         if step.kind in MOVES and (step.x is None or step.z is None):
             continue
         if step.kind in {Kind.NOSE, Kind.PRESET}:
             continue
-        if step.kind is Kind.SPINDLE and step.spindle.direction and not step.spindle.speed:
-            continue
+        if step.kind is Kind.SPINDLE:
+            same, spindle = is_same_run(step.spindle, spindle), step.spindle
+            if same or (spindle.direction and not spindle.speed):
+                continue
         yield step
 
 

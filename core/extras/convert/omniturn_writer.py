@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from math import copysign
 from typing import NamedTuple
 
-from core.extras.convert.path_steps import Kind, Spindle, Step
+from core.extras.convert.path_steps import Kind, Spindle, Step, is_same_run
 from core.extras.convert.reasons import refuse, warn
 from core.extras.convert.source_options import Options
 from core.language.diagnostics import Diagnostic
@@ -223,16 +223,11 @@ class Writer:
             self.say(f"G77S{number(spindle.most, 1)}", step)
         mode = "G96" if spindle.css else "G97"
         speed = f"S{number(spindle.speed, 3)}" if spindle.speed else ""
-        if replace_most(spindle) != replace_most(before):
+        if not is_same_run(spindle, before):
             start = (
                 "" if spindle.direction == before.direction else ("M03" if spindle.direction > 0 else "M04")
             )
             self.say(f"{mode}{start}{speed}", step)
-
-
-def replace_most(spindle: Spindle) -> tuple[int, float, bool]:
-    """Return the state of the spindle without its limit."""
-    return spindle.direction, spindle.speed, spindle.css
 
 
 def number(value: float, places: int = 5) -> str:
@@ -261,6 +256,7 @@ def _write_thread(writer: Writer, step: Step, after: Sequence[Step]) -> int:
         raise refuse(step.line, 1, "thread-chain")
     assert out is not None
     assert out.x is not None
+    assert out.z is not None
     least = LEAST_DEPTH[writer.metric]
     away = copysign(1.0, out.x - step.x)
     taper = step.x - start_x
@@ -281,6 +277,9 @@ def _write_thread(writer: Writer, step: Step, after: Sequence[Step]) -> int:
     )
     writer.say(words, step)
     writer.x, writer.z = begin, start_z
+    if abs(out.z - step.z) > _NEAR:
+        writer.warnings.append(warn(step.line, 1, "thread-pull-out"))
+        return 1
     return 2 + _returns(out, after[1:], start_z)
 
 
@@ -288,8 +287,7 @@ def _is_pull_out(step: Step, out: Step | None) -> bool:
     if out is None or out.kind is not Kind.RAPID or out.x is None or out.z is None:
         return False
     assert step.x is not None
-    assert step.z is not None
-    return abs(out.z - step.z) < _NEAR and abs(out.x - step.x) > _NEAR
+    return abs(out.x - step.x) > _NEAR
 
 
 def _returns(out: Step, after: Sequence[Step], start_z: float) -> int:

@@ -40,6 +40,11 @@ class Spindle:
     most: float = 0.0
 
 
+def is_same_run(one: Spindle, other: Spindle) -> bool:
+    """Return whether two states of the spindle differ at most in the maximum speed."""
+    return (one.direction, one.speed, one.css) == (other.direction, other.speed, other.css)
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """One step. Lengths are in mm, X is a radius, and a coordinate that is unknown is None.

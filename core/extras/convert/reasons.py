@@ -42,6 +42,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "The contour of the cycle from N{first} to N{last} was not found.",
         "Correct P and Q of the cycle.",
     ),
+    "cycle-empty": (
+        "The contour of the cycle has no moves after its first one.",
+        "Add the moves of the contour, or remove the cycle.",
+    ),
     "cycle-pocket": (
         "The contour of the cycle rises and falls in {axis}.",
         "Rough the pocket with a separate cycle, or write the passes as moves.",
@@ -86,6 +90,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
     "thread-chain": (
         "The thread is not followed by a rapid straight out in X, so it cannot be cut in separate passes.",
         "End the thread with a rapid in X.",
+    ),
+    "thread-ends": (
+        "{word}: OmniTurn cannot cut a thread with tapered ends in several passes.",
+        "Remove E and L, and turn a relief groove.",
     ),
     "thread-lead": ("The thread has no lead.", "Write F with the lead of the thread."),
     "tool-number": ("{word}: OmniTurn has the tools T1 to T32.", "Change the tool number."),

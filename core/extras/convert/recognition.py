@@ -16,6 +16,7 @@ _FANUC = re.compile(
     r"^\s*[O:]\d+\s*$|[UW][-+.\d]|T\d{3,4}(?!\d)|G50(?!\d)[^(]*S|G7[0-3][^(]*P\d+[^(]*Q|G28\s*U|^%?\s*O\d{3,5}",
     re.IGNORECASE | re.MULTILINE,
 )
+_PLANE = re.compile(r"G18(?!\d)", re.IGNORECASE)
 _SYSTEM_B = re.compile(
     r"G9[45](?!\d)[^XZ]*F|G92(?!\d)[^XZ(]*S|G7[789](?!\d)[^(\n]*[XZ]|G91(?!\d)", re.IGNORECASE
 )
@@ -30,7 +31,7 @@ def recognized(lines: Sequence[str]) -> Control | None:
     if _LINUXCNC.search(text):
         return Control.LINUXCNC
     if not _FANUC.search(text):
-        return None
+        return Control.LINUXCNC if _PLANE.search(text) else None
     if _HAAS.search("\n".join(lines)):
         return Control.HAAS
     return Control.FANUC_B if _SYSTEM_B.search(text) else Control.FANUC_A

@@ -9,6 +9,7 @@ from core.extras.convert.path_steps import Kind, Step
 from core.extras.convert.reasons import refuse
 from core.extras.convert.source_arcs import arc
 from core.extras.convert.source_corners import Corner, add_corner
+from core.extras.convert.source_cycles import Cycles
 from core.extras.convert.source_flow import Flow
 from core.extras.convert.source_lines import Statement, Word
 from core.extras.convert.source_options import Control, Options
@@ -17,11 +18,40 @@ from core.extras.convert.thread_cycles import single_pass
 from core.language.diagnostics import Diagnostic, ProgramError
 
 _IDLE = frozenset(
-    {9, 17, 18, 40, 43, 49, 61, 61.1, 64, 69, 80, 91.1, 90.1, 53.1, 15, 50.1, 13.1, 113, 67, 23, 25, 26, 22}
+    {
+        9,
+        17,
+        18,
+        40,
+        43,
+        49,
+        61,
+        61.1,
+        64,
+        69,
+        80,
+        91.1,
+        92.1,
+        92.2,
+        53.1,
+        15,
+        50.1,
+        13.1,
+        113,
+        67,
+        23,
+        25,
+        26,
+        22,
+    }
 )
-_SILENT = frozenset({17, 18, 40, 49, 80, 69, 91.1, 15, 67, 43})  # the state that a lathe program has anyway
+_SILENT = frozenset(
+    {17, 18, 40, 49, 80, 69, 91.1, 92.1, 92.2, 15, 67, 43}
+)  # the state that a lathe program has anyway
 _LEFT_OUT_M = frozenset({6, 7, 17, 18, 23, 24, 40, 41, 42, 43, 44, 45, 46, 47, 48, 49})
 _SILENT_M = frozenset({6, 7})
+# Haas: chip conveyor, automatic door, high-pressure coolant, air jet, and display
+_LEFT_OUT_M_OF_HAAS = frozenset({12, 13, 31, 32, 33, 76, 77, 83, 84, 85, 86, 88, 89})
 _C_AXIS = frozenset({7.1, 12.1, 107, 112, 12, 16, 12.2})
 _C_WORDS = "CHABYV"
 
@@ -32,6 +62,7 @@ class Reader:
     def __init__(self, texts: Sequence[str], options: Options) -> None:
         self.flow = Flow(texts, options.control)
         self.state = SourceState(options, metric=options.metric)
+        self._cycles = Cycles(self.state, self.flow, self.execute)
         self._corner: Corner | None = None
         self._nose_ends = False
         control = options.control
@@ -120,7 +151,7 @@ class Reader:
         word = statement.word("F")
         if (
             word is None
-            or statement.has_g(32, 33, 76, 34)
+            or statement.has_g(4, 32, 33, 76, 34)
             or (state.motion in {32, 33} and not statement.codes("G"))
         ):
             return
@@ -138,7 +169,7 @@ class Reader:
         code = 92 if self.state.control.has_system_a else 78
         if not self.state.control.is_fanuc:
             return False
-        return statement.has_g(code) or (self.state.motion == 92.5 and not statement.codes("G"))
+        return statement.has_g(code) or (self.state.motion == code and not statement.codes("G"))
 
     def _tool(self, statement: Statement) -> None:
         state, word = self.state, statement.word("T")
@@ -200,7 +231,8 @@ class Reader:
     def _machine_code(self, word: Word) -> None:
         options = self.state.options
         code = word.value
-        if code in options.skipped_m or code in _LEFT_OUT_M:
+        haas = options.control is Control.HAAS and code in _LEFT_OUT_M_OF_HAAS
+        if code in options.skipped_m or code in _LEFT_OUT_M or haas:
             if code not in _SILENT_M:
                 self.state.warn(word, "left-out", word=word.text)
         elif code in options.m_codes:
@@ -231,10 +263,18 @@ class Reader:
         motion = [each for each in statement.codes("G") if self._is_motion(each)]
         if motion:
             state.motion = motion[-1].value
+            if motion[-1].value != state.cycle_code:
+                state.cycle_code, state.hole = -1, {}
+        if statement.has_g(80):
+            state.motion = 0
         self._nose_codes(statement)
         axes = [
             each for each in statement.words if each.letter in ("XZUW" if state.control.is_fanuc else "XZ")
         ]
+        if self._cycles.is_modal(state.motion):
+            if axes:
+                self._cycles.modal(statement, motion[-1] if motion else axes[0])
+            return
         self._check_letters(statement)
         if not axes:
             return
@@ -244,6 +284,8 @@ class Reader:
             state.add(Step(Kind.NOSE, statement.line, number=40))
 
     def _is_motion(self, word: Word) -> bool:
+        if self._cycles.is_modal(word.value):
+            return True
         if word.value in {0, 1, 2, 3, 33} or (word.value == 32 and self.state.control.is_fanuc):
             return True
         known = (
@@ -339,7 +381,7 @@ class Reader:
         elif (code == 50 and control.is_fanuc) or (code == 92 and not control.has_system_a):
             self._preset(statement, word)
         else:
-            return False
+            return self._cycles.one_shot(statement, word)
         return True
 
     def _dwell(self, statement: Statement, word: Word) -> None:
@@ -359,8 +401,6 @@ class Reader:
         x_word, z_word = (
             next((each for each in statement.words if each.letter in pair), None) for pair in ("XU", "ZW")
         )
-        if x_word is None and z_word is None and state.control.is_fanuc:
-            raise refuse(word.line, word.column, "cycle-word", word="U0 W0")
         through = state.target(statement)
         if through != (state.x, state.z):
             state.rapid(statement.line, *through)

@@ -40,6 +40,10 @@ class SourceState:
     nose: int = 40
     work_offset: float = 0
     comment: str = ""
+    cycle_code: float = -1  # single cycle whose values are stored
+    cycle_end: tuple[float, float] | None = None
+    cycle_taper: float = 0.0
+    hole: dict[str, Word] = field(default_factory=dict)  # words of the active hole cycle
     returns_to_r: bool = False  # G99 of G-code systems B and C
 
     @property

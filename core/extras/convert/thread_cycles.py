@@ -6,6 +6,7 @@ from math import copysign, radians, sqrt, tan
 
 from core.extras.convert.path_steps import Kind
 from core.extras.convert.reasons import refuse
+from core.extras.convert.single_cycles import cycle_target, taper_of
 from core.extras.convert.source_lines import Statement, Word
 from core.extras.convert.source_state import SourceState
 
@@ -38,20 +39,13 @@ def thread_box(state: SourceState, statement: Statement, code: Word) -> None:
     """Append the four moves of the single thread cycle G92 (G78 of system B). Raises ProgramError."""
     x0, z0 = state.here(code)
     lead = lead_of(state, statement, code)
-    taper = _taper(state, statement)
-    x, z = state.target(statement)
-    assert x is not None
-    assert z is not None
+    taper = taper_of(state, statement)
+    x, z = cycle_target(state, statement, code)
     line = statement.line
     state.rapid(line, x + taper, z0)
     state.go(Kind.THREAD, line, x, z, feed=lead, per_rev=True)
     state.rapid(line, x0, z)
     state.rapid(line, x0, z0)
-
-
-def _taper(state: SourceState, statement: Statement) -> float:
-    word = next((each for letter in "RI" if (each := statement.word(letter))), None)
-    return 0.0 if word is None else state.length(word)
 
 
 class FanucThread:
@@ -147,7 +141,7 @@ def linuxcnc_thread_cycle(state: SourceState, statement: Statement, code: Word) 
             raise refuse(code.line, code.column, "cycle-word", word=letter)
     taper = words["L"]
     if taper is not None and taper.value:
-        raise refuse(taper.line, taper.column, "code-unknown", word=taper.text)
+        raise refuse(taper.line, taper.column, "thread-ends", word=taper.text)
     _, z = state.target(statement)
     assert z is not None
     peak, first, full = (_half(state, words[letter]) for letter in "IJK")
