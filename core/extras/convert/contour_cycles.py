@@ -126,7 +126,7 @@ def passes(
     if not cut_pieces:
         raise refuse(code.line, code.column, "cycle-empty")
     _check_rising(code, cut_pieces, toward, across_x=across_x)
-    _check_rising(code, pieces[1 : lowest + 1], -toward, across_x=across_x)
+    _check_facing(code, pieces[1 : lowest + 1], allowance[1], across_x=across_x)
     state.rapid(code.line, *first)
     level = begin[0]
     while abs(bottom - level) > depth + _SAME:
@@ -210,6 +210,17 @@ def _follow(state: SourceState, code: Word, step: Step) -> None:
 def replace_line(code: Word, line: int) -> Word:
     """Return the word of a cycle at another line, to which its moves belong."""
     return code._replace(line=line)
+
+
+def _check_facing(code: Word, pieces: Sequence[Piece], allowance: float, *, across_x: bool) -> None:
+    """Raise ProgramError if the contour before its deepest point is not in front of part zero.
+
+    The passes of G71 begin in front of the part, so that they would cut the contour there. A contour may only
+    face the part before it turns.
+    """
+    least = min((each.end[1] for each in pieces), default=0.0)
+    if pieces and (not across_x or least < min(allowance, 0.0) - _SAME):
+        raise refuse(code.line, code.column, "cycle-pocket", axis="X" if across_x else "Z")
 
 
 def contour_point(steps: Sequence[Step]) -> Point:

@@ -63,6 +63,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "Write F with a decimal point.",
     ),
     "file-empty": ("The file contains no moves.", "Choose a file that contains a turning program."),
+    "hole-plane": (
+        "{word} drills along Y while G18 is active.",
+        "Write G17 before the cycle.",
+    ),
     "inverse-time": ("G93 (inverse time feed) is not supported.", "Write feeds with G94 or G95."),
     "label": ("The target {word} does not exist in this file.", "Add the line number, or correct the jump."),
     "m-code": (

@@ -21,7 +21,8 @@ _SYSTEM_B = re.compile(
     r"G9[45](?!\d)[^XZ]*F|G92(?!\d)[^XZ(]*S|G7[789](?!\d)[^(\n]*[XZ]|G91(?!\d)", re.IGNORECASE
 )
 _HAAS = re.compile(
-    r"\bG53\b|\bM97\b|\bHAAS\b|G54[^(\n]*$|G76[^(\n]*D[^(\n]*K|G71[^(\n]*P\d+[^(\n]*D", re.IGNORECASE
+    r"\bG53\b|\bM97\b|\bHAAS\b|G76[^(\n]*D[^(\n]*K|G7[12][^(\n]*P\d+[^(\n]*D|^\s*(N\d+\s*)?G28\s*($|\()",
+    re.IGNORECASE | re.MULTILINE,
 )
 
 

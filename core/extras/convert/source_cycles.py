@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from core.extras.convert.contour_cycles import (
     Roughing,
@@ -28,8 +28,16 @@ from core.extras.convert.thread_cycles import (
 )
 
 Execute = Callable[[Statement], None]
-_BOXES = {90: turning_box, 92: thread_box, 94: facing_box}
-_BOXES_OF_B = {77: turning_box, 78: thread_box, 79: facing_box}
+_BOXES: Mapping[int, Callable[[SourceState, Statement, Word], None]] = {
+    90: turning_box,
+    92: thread_box,
+    94: facing_box,
+}
+_BOXES_OF_B: Mapping[int, Callable[[SourceState, Statement, Word], None]] = {
+    77: turning_box,
+    78: thread_box,
+    79: facing_box,
+}
 _WORDS = {
     70: "PQFSUWD", 71: "PQUWDRFSIK", 72: "PQUWDRFSIK", 73: "PQUWRFSD", 74: "RXZUWPQFIKD", 75: "RXZUWPQFIKD",
     76: "PQRXZUWFKDAIEHJL",
@@ -49,7 +57,11 @@ class Cycles:
         """Return whether this G code remains active for further lines with axis words."""
         return code in self._boxes() or code in self._holes()
 
-    def _boxes(self) -> dict[int, Callable[[SourceState, Statement, Word], None]]:
+    def is_hole(self, code: float) -> bool:
+        """Return whether this G code is a hole cycle."""
+        return code in self._holes()
+
+    def _boxes(self) -> Mapping[int, Callable[[SourceState, Statement, Word], None]]:
         if not self._state.control.is_fanuc:
             return {}
         return _BOXES if self._state.control.has_system_a else _BOXES_OF_B
@@ -66,6 +78,8 @@ class Cycles:
         if number in self._boxes():
             self._boxes()[number](self._state, statement, code)
         else:
+            if self._state.plane == 18 and not self._state.control.is_fanuc:
+                raise refuse(code.line, code.column, "hole-plane", word=f"G{number}")
             hole_cycle(self._state, statement, code)
 
     def one_shot(self, statement: Statement, code: Word) -> bool:

@@ -89,6 +89,7 @@ class Reader:
         state = self.state
         if statement.comment:
             state.comment = f"{state.comment} {statement.comment}".strip()
+        statement = self._without_y(statement)
         if not statement.words:
             return
         self._modes(statement)
@@ -103,6 +104,13 @@ class Reader:
         for word in statement.codes("G"):
             if not self._numbers_mode(word) and not self._feed_mode(word):
                 self._other_mode(word)
+
+    def _without_y(self, statement: Statement) -> Statement:
+        """Return the statement without Y0 and V0, which a lathe without a Y axis does not need."""
+        idle = [each for each in statement.words if each.letter in "YV" and not each.value]
+        for each in idle:
+            self.state.warn(each, "left-out", word=each.text)
+        return replace(statement, words=tuple(each for each in statement.words if each not in idle))
 
     def _numbers_mode(self, word: Word) -> bool:
         """Execute a code of the unit, of X or of increments; return whether the word is such a code."""
@@ -138,6 +146,8 @@ class Reader:
             if state.work_offset not in {0, code} or code != int(code):
                 raise refuse(word.line, word.column, "work-offset", word=word.text)
             state.work_offset = code
+        elif code in {17, 18, 19}:
+            state.plane = code
         elif code in _C_AXIS:
             raise refuse(word.line, word.column, "c-axis", word=word.text)
         elif code in _IDLE and code not in _SILENT:
@@ -190,28 +200,28 @@ class Reader:
             state.add(Step(Kind.TOOL, statement.line, number=offset))
 
     def _spindle(self, statement: Statement) -> None:
+        """Execute G96, G97, S, and M03 and M04. Raises ProgramError."""
         state = self.state
         spindle = state.spindle
-        limit = statement.has_g(50) or (statement.has_g(92) and statement.word("S") is not None)
+        limit = statement.has_g(50) or (statement.has_g(92) and state.control is not Control.LINUXCNC)
         word = statement.word("S")
         for code in statement.codes("G"):
-            if code.value in {96, 97}:
-                spindle = replace(spindle, css=code.value == 96)
-        if word is not None:
-            if limit:
-                spindle = replace(spindle, most=self._rpm(word))
-            else:
-                spindle = replace(spindle, speed=word.value if spindle.css else self._rpm(word))
+            if code.value in {96, 97} and spindle.css != (code.value == 96):
+                spindle = replace(spindle, css=code.value == 96, speed=0.0)
+        if word is not None and limit:
+            spindle = replace(spindle, most=self._rpm(word))
+        elif word is not None:
+            spindle = replace(spindle, speed=word.value if spindle.css else self._rpm(word))
         most = statement.word("D")
         if most is not None and statement.has_g(96) and not state.control.is_fanuc:
             spindle = replace(spindle, most=self._rpm(most))
         for code in statement.codes("M"):
             if code.value in {3, 4}:
                 spindle = replace(spindle, direction=1 if code.value == 3 else -1)
-        if spindle != state.spindle:
-            state.spindle = spindle
-            if spindle.direction:
-                state.add(Step(Kind.SPINDLE, statement.line, spindle=spindle))
+        before, state.spindle = state.spindle, spindle
+        keeps_speed = before.css and not spindle.css and before.direction == spindle.direction
+        if spindle != before and spindle.direction and (spindle.speed or keeps_speed):
+            state.add(Step(Kind.SPINDLE, statement.line, spindle=spindle))
 
     def _rpm(self, word: Word) -> float:
         most = self.state.options.most_rpm
@@ -272,7 +282,7 @@ class Reader:
             each for each in statement.words if each.letter in ("XZUW" if state.control.is_fanuc else "XZ")
         ]
         if self._cycles.is_modal(state.motion):
-            if axes:
+            if axes or (motion and self._cycles.is_hole(state.motion)):
                 self._cycles.modal(statement, motion[-1] if motion else axes[0])
             return
         self._check_letters(statement)
@@ -375,11 +385,11 @@ class Reader:
         if code == 4:
             self._dwell(statement, word)
         elif code in {28, 30}:
-            self._home(statement, word)
+            self._home(statement)
         elif code == 53:
             self._machine_position(statement, word)
         elif (code == 50 and control.is_fanuc) or (code == 92 and not control.has_system_a):
-            self._preset(statement, word)
+            self._preset(statement)
         else:
             return self._cycles.one_shot(statement, word)
         return True
@@ -394,7 +404,7 @@ class Reader:
         if seconds > 0:
             self.state.add(Step(Kind.DWELL, statement.line, number=max(seconds, 0.1)))
 
-    def _home(self, statement: Statement, word: Word) -> None:
+    def _home(self, statement: Statement) -> None:
         state = self.state
         letters = "XZUW" if state.control.is_fanuc else "XZ"
         self._only(statement, "GMST" + letters)
@@ -430,13 +440,11 @@ class Reader:
         state.add(Step(Kind.HOME, statement.line, 0.0 if x else None, 0.0 if z else None))
         state.x, state.z = None if x else state.x, None if z else state.z
 
-    def _preset(self, statement: Statement, word: Word) -> None:
+    def _preset(self, statement: Statement) -> None:
         """Execute G50 or G92: a maximum speed, a preset of the position, or both."""
         state = self.state
         self._only(statement, "GMSTXZ" + ("UW" if state.control.is_fanuc else ""))
         if statement.word("X") is None and statement.word("Z") is None:
-            if statement.word("S") is None:
-                raise refuse(word.line, word.column, "code-unknown", word=word.text)
             return
         x, z = statement.word("X"), statement.word("Z")
         state.x = state.across(x) if x is not None else state.x

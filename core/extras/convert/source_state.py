@@ -35,6 +35,7 @@ class SourceState:
     feed: float | None = None
     lead: float = 0.0  # of the last thread, mm/rev
     motion: float = 0
+    plane: float = 18
     spindle: Spindle = field(default_factory=Spindle)
     tool: int = 0
     nose: int = 40

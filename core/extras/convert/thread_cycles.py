@@ -159,14 +159,16 @@ def linuxcnc_thread_cycle(state: SourceState, statement: Statement, code: Word) 
     side = copysign(1.0, peak)
     along = copysign(1.0, z - z0)
     for cut in cuts:
-        x = x0 + side * (abs(peak) + cut)
+        # Each pass is shifted along the flank, and so is its retract, away from the part.
+        left = abs(full) - cut
+        x, clear = x0 + side * (abs(peak) + cut), x0 - side * left
         begin = z0 + along * cut * tan(radians(angle))
-        state.rapid(statement.line, x0, begin)
+        end = z - along * left * tan(radians(angle))
+        state.rapid(statement.line, clear, begin)
         state.rapid(statement.line, x, begin)
-        state.go(Kind.THREAD, statement.line, x, z, feed=lead, per_rev=True)
-        state.rapid(statement.line, x0, z)
-        state.rapid(statement.line, x0, begin)
-    state.rapid(statement.line, x0, z0)
+        state.go(Kind.THREAD, statement.line, x, end, feed=lead, per_rev=True)
+        state.rapid(statement.line, clear, end)
+    state.rapid(statement.line, x0, z)
 
 
 def _half(state: SourceState, word: Word | None) -> float:

@@ -1,0 +1,142 @@
+"""The reader of LinuxCNC programs against LinuxCNC's own interpreter, where it is installed."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from core.extras.convert.path_steps import MOVES, Kind
+from core.extras.convert.source_options import Control, Options
+from core.extras.convert.source_reader import Reader
+
+RS274 = shutil.which("rs274")
+INI = "[RS274NGC]\nPARAMETER_FILE = {folder}/rs.var\nLATHE = 1\n[EMCIO]\nTOOL_TABLE = {folder}/rs.tbl\n"
+CANON = re.compile(r"(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED)\(([^)]*)\)")
+NEAR = 0.00006  # rs274 prints four decimal places; lengths are in mm here
+
+pytestmark = pytest.mark.skipif(RS274 is None, reason="rs274 of LinuxCNC is not installed")
+
+CONTOUR = """\
+G21 G18 G7 G95
+T1 M6
+G97 S500 M3
+G0 X50 Z2
+G1 Z-25 F.2
+G2 X62 Z-31 R6
+G3 X70 Z-35 I0 K-4
+G8
+G1 X40
+G7
+G91
+G1 X-4 Z-3.3
+G90
+G0 X100
+M2
+"""
+THREAD = """\
+G21 G18 G7 G95
+T1 M6
+G97 S500 M3
+G0 X30 Z4
+G76 P1.5 Z-20 I-2.5 J.25 K1.9 R1.5 Q29.5 H2
+G0 X40 Z4
+X16
+G76 P1.25 Z-15 I2 J.2 K1.2
+G33 Z-10 K1.5
+G0 X30
+M2
+"""
+MACRO = """\
+G21 G18 G8 G94
+o100 sub
+G1 X[#1] Z[0 - #2 * 2.5] F100
+o100 endsub
+G0 X40 Z2
+#<depth> = 1
+o101 while [#<depth> LE 3]
+o100 call [40 - #<depth>] [#<depth>]
+o102 if [#<depth> EQ 2]
+G0 X45
+o102 else
+G0 X[44 + SIN[30]]
+o102 endif
+#<depth> = [#<depth> + 1]
+o101 endwhile
+o103 repeat [2]
+G1 X[38 + ATAN[1]/[1] / 45]
+G1 X37
+o103 endrepeat
+M2
+"""
+
+
+class Move(NamedTuple):
+    """A move in mm: X is a radius; the center is 0 for straight moves."""
+
+    kind: str
+    x: float
+    z: float
+    cx: float = 0.0
+    cz: float = 0.0
+    turn: int = 0
+
+
+def canon(text: str, folder: Path) -> list[Move]:
+    """Return the moves that LinuxCNC makes."""
+    (folder / "lathe.ini").write_text(INI.format(folder=folder))
+    (folder / "rs.var").write_text("")
+    (folder / "rs.tbl").write_text("T1 P1 D0 X0 Z0\n")
+    (folder / "part.ngc").write_text(text)
+    words = [RS274 or "rs274", "-g", "-i", "lathe.ini", "-t", "rs.tbl", "part.ngc"]
+    out = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=60, check=True).stdout
+    moves: list[Move] = []
+    for name, values in CANON.findall(out):
+        v = [float(each) for each in values.split(",")]
+        if name == "ARC_FEED":
+            moves.append(Move("arc", v[1], v[0], v[3], v[2], round(v[4])))
+        else:
+            moves.append(Move("rapid" if name == "STRAIGHT_TRAVERSE" else "cut", v[0], v[2]))
+    return without_standstill(moves)
+
+
+def ours(text: str) -> list[Move]:
+    """Return the moves of our reader, without those whose position is unknown."""
+    reader = Reader(text.splitlines(), Options(Control.LINUXCNC))
+    reader.read()
+    moves = []
+    for step in reader.state.steps:
+        if step.kind in MOVES and step.x is not None and step.z is not None:
+            kind = {Kind.RAPID: "rapid", Kind.ARC: "arc"}.get(step.kind, "cut")
+            center = (step.cx, step.cz, 1 if step.clockwise else -1) if kind == "arc" else (0.0, 0.0, 0)
+            moves.append(Move(kind, step.x, step.z, *center))
+    return without_standstill(moves)
+
+
+def without_standstill(moves: list[Move]) -> list[Move]:
+    found = moves[:1]
+    for each in moves[1:]:
+        if max(abs(each.x - found[-1].x), abs(each.z - found[-1].z)) > NEAR:
+            found.append(each)
+    return found
+
+
+@pytest.mark.parametrize("text", [CONTOUR, THREAD, MACRO], ids=["contour", "thread", "macro"])
+def test_the_reader_moves_as_linuxcnc_does(text: str, tmp_path: Path) -> None:
+    wanted, made = canon(text, tmp_path), ours(text)
+    assert [(each.kind, each.turn) for each in made] == [(each.kind, each.turn) for each in wanted]
+    for one, other in zip(made, wanted, strict=True):
+        assert (one.x, one.z, one.cx, one.cz) == pytest.approx(
+            (other.x, other.z, other.cx, other.cz), abs=NEAR
+        )
+    assert len(wanted) > 6
+
+
+def test_a_difference_would_be_found(tmp_path: Path) -> None:
+    wanted = canon(CONTOUR, tmp_path)
+    assert abs(ours(CONTOUR.replace("R6", "R6.01"))[2].cx - wanted[2].cx) > NEAR
+    assert ours(CONTOUR.replace("G2 X62", "G3 X62"))[2].turn != wanted[2].turn
