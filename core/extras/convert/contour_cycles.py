@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import atan2, copysign, hypot, pi, sqrt
+from math import copysign
+from typing import NamedTuple
 
+from core.extras.convert.contour_pieces import Piece, Point, deeper_sections, turns_back
 from core.extras.convert.path_steps import Kind, Step
 from core.extras.convert.reasons import refuse
 from core.extras.convert.source_lines import Statement, Word
 from core.extras.convert.source_state import SourceState
 
 _SAME = 1e-6  # mm
-Point = tuple[float, float]
 
 
 @dataclass(slots=True)
@@ -25,52 +26,6 @@ class Roughing:
     relief_x: float = 0.0
     relief_z: float = 0.0
     count: int = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Piece:
-    """A line or arc of a contour. Points are the depth of the passes, and the coordinate along them."""
-
-    start: Point
-    end: Point
-    center: Point | None = None
-    clockwise: bool = False
-
-    def extremes(self) -> list[float]:
-        """Return the depths at which an arc is parallel to the passes, between its ends."""
-        if self.center is None:
-            return []
-        radius = hypot(self.start[0] - self.center[0], self.start[1] - self.center[1])
-        points = [(self.center[0] + sign * radius, self.center[1]) for sign in (1.0, -1.0)]
-        return [point[0] for point in points if self._contains(point)]
-
-    def crossing(self, level: float) -> float | None:
-        """Return the coordinate along the passes of the first point at this depth, or None."""
-        if self.center is None:
-            low, high = sorted((self.start[0], self.end[0]))
-            if not low - _SAME <= level <= high + _SAME or high - low < _SAME:
-                return None
-            share = (level - self.start[0]) / (self.end[0] - self.start[0])
-            return self.start[1] + (self.end[1] - self.start[1]) * share
-        radius = hypot(self.start[0] - self.center[0], self.start[1] - self.center[1])
-        off = level - self.center[0]
-        if abs(off) > radius + _SAME:
-            return None
-        half = sqrt(max(radius * radius - off * off, 0.0))
-        found = [self.center[1] + sign * half for sign in (1.0, -1.0)]
-        inside = [each for each in found if self._contains((level, each))]
-        return min(inside, key=lambda each: abs(each - self.start[1])) if inside else None
-
-    def _contains(self, point: Point) -> bool:
-        assert self.center is not None
-        angles = [
-            atan2(each[0] - self.center[0], each[1] - self.center[1])
-            for each in (self.start, point, self.end)
-        ]
-        sense = 1.0 if self.clockwise else -1.0
-        whole = (sense * (angles[2] - angles[0])) % (2 * pi)
-        part = (sense * (angles[1] - angles[0])) % (2 * pi)
-        return part <= whole + 1e-7 or part >= 2 * pi - 1e-7
 
 
 def roughing_words(state: SourceState, statement: Statement, code: Word, rough: Roughing) -> bool:
@@ -117,50 +72,63 @@ def passes(
     start = state.here(code)
     across_x = code.value == 71
     shifted = shift_steps(contour, allowance)
-    first = (start[0] + allowance[0], start[1] + allowance[1])
-    pieces = _pieces(first, shifted, across_x=across_x)
-    begin = _swap(first, across_x=across_x)
-    toward = copysign(1.0, _swap(contour_point(shifted), across_x=across_x)[0] - begin[0])
-    lowest = max(range(len(pieces)), key=lambda k: (toward * pieces[k].end[0], -k))
-    bottom, cut_pieces = pieces[lowest].end[0], pieces[lowest + 1 :]
-    if not cut_pieces:
+    if len(shifted) < 2:
         raise refuse(code.line, code.column, "cycle-empty")
-    _check_rising(code, cut_pieces, toward, across_x=across_x)
-    _check_facing(code, pieces[1 : lowest + 1], allowance[1], across_x=across_x)
+    first = (start[0] + allowance[0], start[1] + allowance[1])
+    begin = _swap(first, across_x=across_x)
+    pieces = _pieces(first, shifted, across_x=across_x)[1:]
+    toward = copysign(1.0, pieces[0].start[0] - begin[0])
+    along = copysign(1.0, pieces[-1].end[1] - begin[1])
+    if turns_back(pieces, along):
+        raise refuse(code.line, code.column, "cycle-undercut", axis="Z" if across_x else "X")
+    depths = [each for piece in pieces for each in (piece.start[0], *piece.extremes(0), piece.end[0])]
+    bottom = max(depths, key=lambda each: toward * each)
     state.rapid(code.line, *first)
     level = begin[0]
     while abs(bottom - level) > depth + _SAME:
         level += toward * depth
-        _one_pass(state, code, cut_pieces, (begin, level, toward), retract, across_x=across_x)
+        place = Level(begin, level, toward, along, depth, retract)
+        _one_level(state, code, pieces, place, across_x=across_x)
     for step in shifted:
         _follow(state, code, step)
-    state.rapid(
-        code.line,
-        *_swap((begin[0], _swap((state.x or 0.0, state.z or 0.0), across_x=across_x)[1]), across_x=across_x),
-    )
+    end = _swap(state.here(code), across_x=across_x)
+    state.rapid(code.line, *_swap((begin[0], end[1]), across_x=across_x))
     state.rapid(code.line, *start)
 
 
-def _one_pass(
-    state: SourceState,
-    code: Word,
-    pieces: Sequence[Piece],
-    place: tuple[Point, float, float],
-    retract: float,
-    *,
-    across_x: bool,
-) -> None:
-    begin, level, toward = place
-    found = (each.crossing(level) for each in pieces)
-    end = next((each for each in found if each is not None), pieces[-1].end[1])
-    along = copysign(1.0, end - begin[1])
-    if abs(end - begin[1]) < _SAME:
-        return
-    state.rapid(code.line, *_swap((level, begin[1]), across_x=across_x))
-    state.cut(code, *_swap((level, end), across_x=across_x))
-    out = min(retract, abs(level - begin[0]), abs(end - begin[1]))
-    state.rapid(code.line, *_swap((level - toward * out, end - along * out), across_x=across_x))
-    state.rapid(code.line, *_swap((level - toward * out, begin[1]), across_x=across_x))
+class Level(NamedTuple):
+    """One depth of the passes: start point of the cycle, signs of depth and travel, and sizes in mm."""
+
+    begin: Point
+    level: float
+    toward: float
+    along: float
+    depth: float
+    retract: float
+
+
+def _one_level(state: SourceState, code: Word, pieces: Sequence[Piece], at: Level, *, across_x: bool) -> None:
+    """Append the passes at one depth, one for each section of the contour that is deeper."""
+    begin, level, toward = at.begin, at.level, at.toward
+    for low, high in deeper_sections(pieces, level, toward):
+        enter = begin[1] if low is None else low
+        if abs(high - enter) <= _SAME:
+            continue
+        if low is None:
+            state.rapid(code.line, *_swap((level, enter), across_x=across_x))
+        else:
+            # The tool enters a pocket where the pass before has cut.
+            above = level - toward * min(at.depth + at.retract, abs(level - begin[0]))
+            state.rapid(code.line, *_swap((begin[0], enter), across_x=across_x))
+            state.rapid(code.line, *_swap((above, enter), across_x=across_x))
+            state.cut(code, *_swap((level, enter), across_x=across_x))
+        state.cut(code, *_swap((level, high), across_x=across_x))
+        out = min(at.retract, abs(level - begin[0]), abs(high - enter))
+        state.rapid(code.line, *_swap((level - toward * out, high - at.along * out), across_x=across_x))
+        if low is not None:
+            state.rapid(code.line, *_swap((begin[0], high - at.along * out), across_x=across_x))
+            out = abs(level - begin[0])
+        state.rapid(code.line, *_swap((level - toward * out, begin[1]), across_x=across_x))
 
 
 def repeats(
@@ -212,22 +180,6 @@ def replace_line(code: Word, line: int) -> Word:
     return code._replace(line=line)
 
 
-def _check_facing(code: Word, pieces: Sequence[Piece], allowance: float, *, across_x: bool) -> None:
-    """Raise ProgramError if the contour before its deepest point is not in front of part zero.
-
-    The passes of G71 begin in front of the part, so that they would cut the contour there. A contour may only
-    face the part before it turns.
-    """
-    least = min((each.end[1] for each in pieces), default=0.0)
-    if pieces and (not across_x or least < min(allowance, 0.0) - _SAME):
-        raise refuse(code.line, code.column, "cycle-pocket", axis="X" if across_x else "Z")
-
-
-def contour_point(steps: Sequence[Step]) -> Point:
-    """Return the first point of a contour, which is on the side of the part that the passes approach."""
-    return steps[0].x or 0.0, steps[0].z or 0.0
-
-
 def _swap(point: Point, *, across_x: bool) -> Point:
     """Return (depth, along) for (x, z) and conversely."""
     return point if across_x else (point[1], point[0])
@@ -244,14 +196,3 @@ def _pieces(first: Point, steps: Sequence[Step], *, across_x: bool) -> list[Piec
         )
         for (a, b), step in zip(pairwise(points), steps, strict=True)
     ]
-
-
-def _check_rising(code: Word, pieces: Sequence[Piece], toward: float, *, across_x: bool) -> None:
-    """Raise ProgramError if the contour returns to the bottom, so that a pass would end too early."""
-    highest = None
-    for piece in pieces:
-        depths = [piece.start[0], *piece.extremes(), piece.end[0]]
-        for each in (-toward * depth for depth in depths):
-            if highest is not None and each < highest - 0.001:
-                raise refuse(code.line, code.column, "cycle-pocket", axis="X" if across_x else "Z")
-            highest = each if highest is None else max(highest, each)

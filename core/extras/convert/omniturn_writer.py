@@ -44,7 +44,7 @@ class Writer:
     active: int = 0  # T that is active in the converted program
     nose: int = 0  # D that the next move needs
     needs_both: bool = True
-    held: Step | None = None  # rapid with an unknown coordinate
+    pending: Step | None = None  # rapid with an unknown coordinate
     infeed: tuple[int, float | None, float | None, bool] | None = None  # last rapid: line, start, G00
 
     # --- numbers
@@ -106,7 +106,6 @@ class Writer:
             case Kind.PRESET:
                 self._preset(step)
             case Kind.NOSE:
-                self._resolve_held()
                 self.say(f"G{round(step.number)}", step)
                 self.nose = 0 if step.number == 40 else self.tool or 1
             case Kind.END:
@@ -119,21 +118,18 @@ class Writer:
         self.active, self.needs_both = self.tool, True
 
     def _unresolved(self) -> None:
-        if self.held is not None:
-            axis = "X" if self.held.x is None else "Z"
-            raise refuse(self.held.line, 1, "position", axis=axis)
-
-    def _resolve_held(self) -> None:
-        """Nothing is written for a rapid until both coordinates are known."""
+        if self.pending is not None:
+            axis = "X" if self.pending.x is None else "Z"
+            raise refuse(self.pending.line, 1, "position", axis=axis)
 
     def _move(self, steps: Sequence[Step], at: int) -> int:
         step = steps[at]
         if step.x is None or step.z is None:
-            self.held = step
+            self.pending = step
             return 1
-        if self.held is not None:
-            self.warnings.append(warn(self.held.line, 1, "approach-joined"))
-            self.held = None
+        if self.pending is not None:
+            self.warnings.append(warn(self.pending.line, 1, "approach-joined"))
+            self.pending = None
         if self.tool and self.active != self.tool:
             self._select(step)
         after = steps[at + 1 : at + 4]
@@ -193,9 +189,9 @@ class Writer:
         self._go(Step(Kind.RAPID, step.line, x, z))
 
     def _home(self, step: Step) -> None:
-        if self.held is not None and not (step.x is not None and step.z is not None):
+        if self.pending is not None and not (step.x is not None and step.z is not None):
             self._unresolved()
-        self.held = None
+        self.pending = None
         if self.active != -1:
             self.say("T0", step)
             step = replace(step, comment="")

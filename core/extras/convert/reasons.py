@@ -46,9 +46,9 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "The contour of the cycle has no moves after its first one.",
         "Add the moves of the contour, or remove the cycle.",
     ),
-    "cycle-pocket": (
-        "The contour of the cycle rises and falls in {axis}.",
-        "Rough the pocket with a separate cycle, or write the passes as moves.",
+    "cycle-undercut": (
+        "The contour of the cycle moves back in {axis}, so that a pass cannot reach it.",
+        "Cut the undercut with separate moves.",
     ),
     "cycle-word": ("{word} is missing in the cycle.", "Add the word to the cycle."),
     "division": ("The expression divides by zero or has no value.", "Correct the expression."),
@@ -96,8 +96,8 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "End the thread with a rapid in X.",
     ),
     "thread-ends": (
-        "{word}: OmniTurn cannot cut a thread with tapered ends in several passes.",
-        "Remove E and L, and turn a relief groove.",
+        "{word}: OmniTurn cannot cut a thread with a tapered entry.",
+        "Remove L and E, and start the thread in front of the part or in a groove.",
     ),
     "thread-lead": ("The thread has no lead.", "Write F with the lead of the thread."),
     "tool-number": ("{word}: OmniTurn has the tools T1 to T32.", "Change the tool number."),
@@ -137,6 +137,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Check that the path to home is clear.",
     ),
     "left-out": ("{word} has no counterpart and is left out.", "Check that the code is not needed."),
+    "machine-code": (
+        "{word} does what the machine file of this machine defines.",
+        "Check that this is the function of the code on the other control.",
+    ),
     "nose-offset": (
         "Nose compensation uses D{number}.",
         "Enter the nose radius in secondary offset D{number}.",

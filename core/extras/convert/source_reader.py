@@ -246,6 +246,7 @@ class Reader:
             if code not in _SILENT_M:
                 self.state.warn(word, "left-out", word=word.text)
         elif code in options.m_codes:
+            self.state.warn(word, "machine-code", word=word.text)
             self.state.add(Step(Kind.M, word.line, number=code))
         else:
             raise refuse(word.line, word.column, "m-code", word=word.text, number=f"{code:g}")
@@ -330,10 +331,10 @@ class Reader:
         if state.motion == 0:
             state.rapid(statement.line, x, z)
             return
-        start = state.here(code)
-        state.cut(code, x, z)
         word = self._corner_word(statement)
-        if word is not None:
+        start = state.here(code) if x is None or z is None or word is not None else None
+        state.cut(code, x, z)
+        if word is not None and start is not None:
             self._corner = Corner(word, abs(state.length(word)), start)
 
     def _corner_word(self, statement: Statement) -> Word | None:

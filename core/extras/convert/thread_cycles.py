@@ -140,7 +140,9 @@ def linuxcnc_thread_cycle(state: SourceState, statement: Statement, code: Word) 
         if words[letter] is None:
             raise refuse(code.line, code.column, "cycle-word", word=letter)
     taper = words["L"]
-    if taper is not None and taper.value:
+    if taper is not None and taper.value == 2:
+        state.warn(code, "thread-pull-out")
+    elif taper is not None and taper.value:
         raise refuse(taper.line, taper.column, "thread-ends", word=taper.text)
     _, z = state.target(statement)
     assert z is not None

@@ -61,6 +61,21 @@ def test_g71_roughs_to_the_contour_with_its_allowance() -> None:
     ]  # fmt: skip
 
 
+def test_g71_cuts_a_pocket_from_its_edge() -> None:
+    # A groove from Z-.3 to Z-.6 down to X1.2 in a diameter of X1.6; depth .1 per side, retract .05
+    made = lines_after(
+        "G71U.1R.05\nG71P1Q2U0W0F.02\nN1G00X1.6\nG01Z-.3\nX1.2Z-.4\nZ-.5\nX1.6Z-.6\nZ-1.\nN2X2."
+    )
+    assert made == [
+        "X1.8", "G95F.02Z-1", "G00X1.9Z-.95", "Z.1",
+        # X1.6 is the edge of the groove, and X1.4 is halfway down its flanks. The tool enters each time
+        # from .05 above the pass before.
+        "X2Z-.3", "X1.9", "G95F.02X1.6", "Z-.6", "G00X1.7Z-.55", "X2", "Z.1",
+        "Z-.35", "X1.7", "G95F.02X1.4", "Z-.55", "G00X1.5Z-.5", "X2", "Z.1",
+        "X1.6", "G95F.02Z-.3", "X1.2Z-.4", "Z-.5", "X1.6Z-.6", "Z-1", "X2", "G00Z.1",
+    ]  # fmt: skip
+
+
 def test_g71_of_one_line_has_the_depth_in_d() -> None:
     one = "G71P10Q20U0W0D.2F.02\nN10G00X1.6\nG01Z-.5\nN20X2."
     assert lines_after(one, "haas")[:4] == ["X1.6", "G95F.02Z-.5", "X2", "G00Z.1"][:4]
@@ -139,7 +154,7 @@ def test_nose_compensation_changes_its_side() -> None:
 @pytest.mark.parametrize(
     ("body", "found"),
     [
-        ("G71U.1R.1\nG71P1Q2U0W0\nN1G00X1.\nG01Z-.2\nX.8Z-.4\nX1.5\nN2X2.", (2, 1, "cycle-pocket")),
+        ("G71U.1R.1\nG71P1Q2U0W0\nN1G00X1.\nG01Z-.4\nX1.2Z-.2\nX1.5\nN2X2.", (2, 1, "cycle-undercut")),
         ("G71U.1R.1\nG71P1Q9U0W0\nN1G00X1.\nN2G01Z-1.", (2, 1, "cycle-contour")),
         ("G71P1Q2U0W0\nN1G00X1.\nN2G01Z-1.", (1, 1, "cycle-word")),
         ("G71U.1R.1\nG71P1Q2U0W0\nN1G00X1.\nN2G00Z1.", (2, 1, "cycle-empty")),

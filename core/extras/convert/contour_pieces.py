@@ -1,0 +1,101 @@
+"""Contours of roughing cycles, and the sections of them that are deeper than a pass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import atan2, cos, hypot, pi, sin, sqrt
+
+_SAME = 1e-6  # mm
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A line or arc of a contour. Points are the depth of the passes, and the coordinate along them."""
+
+    start: Point
+    end: Point
+    center: Point | None = None
+    clockwise: bool = False
+
+    def at(self, share: float) -> Point:
+        """Return the point after this share of the piece, from 0 to 1."""
+        if self.center is None:
+            return (
+                self.start[0] + (self.end[0] - self.start[0]) * share,
+                self.start[1] + (self.end[1] - self.start[1]) * share,
+            )
+        angle = self._angle(self.start) + self._sweep(self.end) * self._sense * share
+        radius = hypot(self.start[0] - self.center[0], self.start[1] - self.center[1])
+        return self.center[0] + radius * sin(angle), self.center[1] + radius * cos(angle)
+
+    def shares(self, level: float, axis: int = 0) -> list[float]:
+        """Return the shares at which the piece crosses a depth, or a coordinate along with ``axis`` 1."""
+        if self.center is None:
+            step = self.end[axis] - self.start[axis]
+            share = (level - self.start[axis]) / step if abs(step) > _SAME else -1.0
+            return [share] if 0.0 < share < 1.0 else []
+        radius = hypot(self.start[0] - self.center[0], self.start[1] - self.center[1])
+        off = level - self.center[axis]
+        if abs(off) > radius:
+            return []
+        half = sqrt(radius * radius - off * off)
+        other = [self.center[1 - axis] + sign * half for sign in (1.0, -1.0)]
+        points = [(level, each) if axis == 0 else (each, level) for each in other]
+        whole = self._sweep(self.end)
+        found = [self._sweep(each) / whole for each in points] if whole else []
+        return sorted(share for share in found if 0.0 < share < 1.0)
+
+    def extremes(self, axis: int) -> list[float]:
+        """Return the least and greatest depth of an arc inside its ends, or of its coordinate along."""
+        if self.center is None:
+            return []
+        radius = hypot(self.start[0] - self.center[0], self.start[1] - self.center[1])
+        tops = [self.center[axis] + sign * radius * (1.0 - 1e-12) for sign in (1.0, -1.0)]
+        return [each for each in tops if self.shares(each, axis)]
+
+    @property
+    def _sense(self) -> float:
+        return 1.0 if self.clockwise else -1.0
+
+    def _angle(self, point: Point) -> float:
+        assert self.center is not None
+        return atan2(point[0] - self.center[0], point[1] - self.center[1])
+
+    def _sweep(self, point: Point) -> float:
+        """Return the angle from the start to a point in the sense of the arc, from 0 to 2 pi."""
+        return (self._sense * (self._angle(point) - self._angle(self.start))) % (2 * pi)
+
+
+def deeper_sections(pieces: Sequence[Piece], level: float, toward: float) -> list[tuple[float | None, float]]:
+    """Return start and end, along the passes, of each section that is deeper than ``level``.
+
+    The start is None if the contour begins deeper, so that the pass begins at the start point of the cycle.
+    """
+    found: list[tuple[float | None, float]] = []
+    inside = False
+    for number, piece in enumerate(pieces):
+        for low, high in pairwise([0.0, *piece.shares(level), 1.0]):
+            if toward * (piece.at((low + high) / 2)[0] - level) <= _SAME:
+                inside = False
+                continue
+            end = piece.at(high)[1]
+            if inside:
+                found[-1] = found[-1][0], end
+            else:
+                found.append((None if number == 0 and low == 0.0 else piece.at(low)[1], end))
+            inside = True
+    return found
+
+
+def turns_back(pieces: Sequence[Piece], along: float) -> bool:
+    """Return whether a contour moves back toward the start of the passes, as in an undercut."""
+    farthest = along * pieces[0].start[1]
+    for piece in pieces:
+        for each in (*piece.extremes(1), piece.end[1]):
+            if along * each < farthest - 0.001:
+                return True
+            farthest = max(farthest, along * each)
+    return False
