@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 NAMES = (
     *("access", "quality", "jobs", "pendant", "mtconnect", "office", "sharing", "analyses", "scheduler"),
-    *("shapes", "drawings", "convert"),
+    *("shapes", "drawings", "convert", "tool_tables"),
 )
 """All optional features. A feature comes after the features that it needs."""
 

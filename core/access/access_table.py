@@ -86,9 +86,9 @@ RULES: dict[Act, Rule] = {
         "entering or touching off a tool's position, nose radius, tip quadrant and "
         "master tool; editing the tools of a mill; undoing or clearing these values",
         "F8, F5",
-        "offsets set, offsets clear, offsets undo",
+        "offsets set, offsets clear, offsets undo, tools import",
     ),
-    Act.SHAPES: Rule(Level.SETUP, "the shape of a tool", "F8 twice", "offsets set T3 kind=…"),
+    Act.SHAPES: Rule(Level.SETUP, "the shape of a tool", "F8 twice", "offsets set T3 kind=…, tools import"),
     Act.ZEROS: Rule(Level.SETUP, "G54 to G59", "G", "offsets set G54"),
     Act.PRESETS: Rule(
         Level.SETUP,

@@ -10319,6 +10319,21 @@
       <translation>VERSIONES EN OTROS CONTROLES</translation>
     </message>
     <message>
+      <location filename="app/extras/tool_tables/extra.py" />
+      <source>import and export the tool tables of other programs</source>
+      <translation>importa y exporta tablas de herramientas de otros programas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tool_tables/import_plan.py" />
+      <source>X and Z are not imported</source>
+      <translation>X y Z no se importan</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tool_tables/import_plan.py" />
+      <source>not imported before the tool is touched off: {names}; touch off T{number}, then import the file again with --replace</source>
+      <translation>no se importa hasta tocar la herramienta: {names}; toque T{number} y vuelva a importar el archivo con --replace</translation>
+    </message>
+    <message>
       <location filename="app/jog/hand_functions.py" />
       <source>A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R</source>
       <translation>HAY UNA LÍNEA EN EJECUCIÓN. DEJE QUE TERMINE, O PÁRELA Y PULSE R</translation>
@@ -20637,6 +20652,206 @@
       <location filename="core/extras/sharing/shared_place.py" />
       <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
       <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>column {name} can be a radius or a diameter; add --x radius or --x diameter</source>
+      <translation>la columna {name} puede ser radio o diámetro; añada --x radius o --x diameter</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>columns that are not imported: {names}</source>
+      <translation>columnas que no se importan: {names}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>did you mean {near}?</source>
+      <translation>¿quiso decir {near}?</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>its columns are: {names}</source>
+      <translation>sus columnas son: {names}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>no column has the tool number; use --map number=COLUMN. The columns are: {names}</source>
+      <translation>ninguna columna tiene el número de herramienta; use --map number=COLUMNA. Las columnas son: {names}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>not valid CSV ({error}); check the quotes</source>
+      <translation>CSV no válido ({error}); revise las comillas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>the file has more than {most} lines; it is not a tool table</source>
+      <translation>el archivo tiene más de {most} líneas; no es una tabla de herramientas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>the file has no column {column}; {remedy}</source>
+      <translation>el archivo no tiene la columna {column}; {remedy}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>the line has no tool number; add T1 to T32</source>
+      <translation>la línea no tiene número de herramienta; añada T1 a T32</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>two columns are {field}; use --map {field}=COLUMN to select one</source>
+      <translation>dos columnas son {field}; elija una con --map {field}=COLUMNA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>{place}, column {column}</source>
+      <translation>{place}, columna {column}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>{text} is not valid; use 1 or 0</source>
+      <translation>{text} no es válido; use 1 o 0</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/csv_table.py" />
+      <source>{text} is unknown; use {range}</source>
+      <translation>{text} es desconocido; use {range}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/linuxcnc_table.py" />
+      <source>Q{value} is not an orientation; use 0 to 9</source>
+      <translation>Q{value} no es una orientación; use 0 a 9</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/linuxcnc_table.py" />
+      <source>line {line}, column {column}</source>
+      <translation>línea {line}, columna {column}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/linuxcnc_table.py" />
+      <source>not imported: {words}</source>
+      <translation>no se importa: {words}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/linuxcnc_table.py" />
+      <source>{letter} is on the line twice; remove one</source>
+      <translation>{letter} está dos veces en la línea; quite una</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/linuxcnc_table.py" />
+      <source>{word} is not a word of a LinuxCNC tool table; use T P X Z D I J Q, and start a remark with a semicolon</source>
+      <translation>{word} no es una palabra de una tabla de herramientas de LinuxCNC; use T P X Z D I J Q y empiece el comentario con punto y coma</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>LinuxCNC tool table</source>
+      <translation>tabla de herramientas de LinuxCNC</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>Mach tool table</source>
+      <translation>tabla de herramientas de Mach</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>check the file and the option --from</source>
+      <translation>revise el archivo y la opción --from</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>export the table from Mach as CSV</source>
+      <translation>exporte la tabla desde Mach como CSV</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>{name}: byte {place} is not UTF-8; save the file as UTF-8</source>
+      <translation>{name}: el byte {place} no es UTF-8; guarde el archivo como UTF-8</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>{name}: byte {place} is not text, so this is a binary file; {remedy}</source>
+      <translation>{name}: el byte {place} no es texto, así que el archivo es binario; {remedy}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>{name}: the format cannot be recognized from the file name; add --from with one of {formats}</source>
+      <translation>{name}: el nombre del archivo no indica el formato; añada --from con uno de {formats}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>{path} cannot be read ({cause}); check the name and the permissions</source>
+      <translation>no se puede leer {path} ({cause}); revise el nombre y los permisos</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/table_file.py" />
+      <source>{path} is larger than 16 MB, so it is not a tool table; check the name</source>
+      <translation>{path} supera 16 MB, así que no es una tabla de herramientas; revise el nombre</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>; further mistakes: {count}</source>
+      <translation>; otros errores: {count}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>D is the diameter of the {kind}</source>
+      <translation>D es el diámetro de la herramienta ({kind})</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>T{number} does not exist here; tool numbers are 1 to 32. Change the number, or use --only to import only some tools</source>
+      <translation>T{number} no existe aquí; los números de herramienta van de 1 a 32. Cambie el número o importe solo algunas herramientas con --only</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>T{number} is already in {earlier}; remove one of them</source>
+      <translation>T{number} ya está en {earlier}; quite una de las dos</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>X and Z are 0, so the tool is not measured</source>
+      <translation>X y Z son 0, así que la herramienta no está medida</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>check the nose radius: {radius} in the table, but {insert} in insert {code} (mm)</source>
+      <translation>revise el radio de punta: {radius} en la tabla, pero {insert} en la plaquita {code} (mm)</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>not imported without a kind of tool: {names}</source>
+      <translation>no se importa sin el tipo de herramienta: {names}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>the file does not specify its unit; add --unit in or --unit mm</source>
+      <translation>el archivo no indica su unidad; añada --unit in o --unit mm</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>the remark is shortened to 40 characters</source>
+      <translation>el comentario se acorta a 40 caracteres</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>{inches} in</source>
+      <translation>{inches} in</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>{name} has no tools to import; check the file and --only</source>
+      <translation>{name} no tiene herramientas que importar; revise el archivo y --only</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>{text} is not a number; correct it</source>
+      <translation>{text} no es un número; corríjalo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tool_tables/tool_entry.py" />
+      <source>{word} {value} is out of range; use {range}, and check the unit of the file</source>
+      <translation>{word} {value} está fuera de rango; use {range} y revise la unidad del archivo</translation>
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />

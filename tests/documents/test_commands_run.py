@@ -26,6 +26,7 @@ NOT_RUN: Mapping[str, str] = {
 """Commands that are not run here, by their first words, and what tests them."""
 STATUS: Mapping[str, int] = {
     "prove resources/programs/bushing.nc": 1,  # the page explains the errors of this program
+    "tools import": 2,  # the questions need a terminal; tests/extras/tool_tables
 }
 """Exit status of the commands that do not end with 0, by their first words."""
 FILES: Mapping[str, str] = {
@@ -51,6 +52,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, turndesk: Turndesk) 
         shutil.copyfile(ROOT / "resources" / "programs" / program, tmp_path / name)
     shutil.copyfile(ROOT / "resources" / "programs" / "offsets.toml", tmp_path / "offsets.toml")
     Path("tools.toml").write_text('tool.1 = {kind = "turning", insert = "CNMG432", tip = 3}\n', "utf-8")
+    Path("tool.tbl").write_text("T1 P1 X1 Z-1 D.03 Q2 ;rough\n", "utf-8")
+    Path("tools.csv").write_text("Pos,Dia,Length\n1,50,-20\n", "utf-8")
     assert turndesk("offsets", "set", "T9", "kind=drill", "diameter=.25").status == 0
     return tmp_path
 

@@ -35,11 +35,14 @@ def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind) -> tuple[Ch
 def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ...]:
     """Undo the latest step of all tables and return the resulting changes.
 
-    Another call undoes the step before it. Raises StoreError if no step is left.
+    A step that changed several tables is undone in all of them. Another call undoes the step before it.
+    Raises StoreError if no step is left.
     """
     last = {log: _last_step(connection, log, None) or 0 for log in LOGS}
-    log = max(LOGS, key=lambda each: last[each] if isinstance(last[each], int) else MOST_STEPS)
-    return _undo(connection, reason, log, None)
+    order = {log: step if isinstance(step, int) else MOST_STEPS for log, step in last.items()}
+    newest = max(order.values())
+    logs = [log for log in LOGS if order[log] == newest] if newest else LOGS[:1]
+    return tuple(change for log in logs for change in _undo(connection, reason, log, None))
 
 
 def _last_step(

@@ -169,6 +169,30 @@ def change(
     return new
 
 
+def change_rows(
+    connection: sqlite3.Connection,
+    wanted: Mapping[Kind, Mapping[int, Mapping[str, Value]]],
+    reason: Reason,
+) -> int:
+    """Set the fields of several rows, by table and number, as one step; return the number of changed rows.
+
+    Raises StoreError for an unknown number and for a value that the store does not accept. Nothing is then
+    changed. The master tool cannot be changed with this function.
+    """
+    pairs: dict[Kind, Changes] = {}
+    for kind, values in wanted.items():
+        rows = current(connection, kind)
+        for number in values:
+            check_number(kind, number)
+        new = {n: changed(kind, n, rows.get(n), fields) for n, fields in values.items()}
+        pairs[kind] = {n: (rows.get(n), row) for n, row in new.items() if row != rows.get(n)}
+    step = _next_step(connection)
+    for kind, changes in pairs.items():
+        if changes:
+            apply(connection, kind, changes, reason, step=step)
+    return sum(map(len, pairs.values()))
+
+
 def _check_edge(kind: Kind, number: int, rows: Mapping[int, Row], wanted: Mapping[str, Value]) -> None:
     """Raise StoreError if a cutting edge has no tool yet, or is to become the master tool."""
     if kind is not Kind.TOOL or tool_of(number) == number:
@@ -307,11 +331,20 @@ def clear(connection: sqlite3.Connection, kind: Kind, reason: Reason) -> int:
 
 
 def apply(
-    connection: sqlite3.Connection, kind: Kind, changes: Changes, reason: Reason, undoes: int | None = None
+    connection: sqlite3.Connection,
+    kind: Kind,
+    changes: Changes,
+    reason: Reason,
+    undoes: int | None = None,
+    step: int | None = None,
 ) -> tuple[Change, ...]:
-    """Write changes and their history as one step; return the step's history entries."""
+    """Write changes and their history as one step; return the step's history entries.
+
+    ``step`` is the number of a step that also changes another table; None begins a new step.
+    """
     table, log = TABLES[kind], TABLES[kind].log
-    step, at, columns = _next_step(connection), utc_now(), _columns(kind)
+    step = _next_step(connection) if step is None else step
+    at, columns = utc_now(), _columns(kind)
     # All old rows are deleted first, so that the table never has two master tools.
     connection.executemany(f"DELETE FROM {table.name} WHERE {log.key} = ?", [(number,) for number in changes])
     _insert(

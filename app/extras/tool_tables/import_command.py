@@ -1,0 +1,256 @@
+"""Import of a tool table: preview, questions, one step in the history of the offsets."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.actions.meant_changes import demand_meant
+from app.cli.store_command import opened_store
+from app.cli.who_changes import who_changes
+from app.compose.machine.machine_setup import read_machine
+from app.desk.command_errors import EXIT_OK, CommandError
+from app.desk.toml_file import refuse, unknown
+from app.extras.tool_tables.import_plan import (
+    FieldChange,
+    Status,
+    StoredTools,
+    ToolPlan,
+    changes_of,
+)
+from core.access.access_table import Act
+from core.extras.tool_tables.csv_columns import FIELD_NAMES
+from core.extras.tool_tables.table_file import format_of, read_table
+from core.extras.tool_tables.tool_entry import Reading, ToolTable, ToolTableError
+from core.json_key import Output, keys
+from core.message import Message
+from core.store.offsets import offset_tables
+from core.store.offsets.offset_tables import Reason
+from core.store.store_rows import FIELDS, OFFSETS, Sort, Value, inches
+
+if TYPE_CHECKING:
+    from core.store.store import Store
+
+_ALIASES = {"t": "number", "tool": "number", "r": "nose_radius", "tip": "quadrant", "q": "quadrant"}
+
+
+def import_table(args: argparse.Namespace) -> int:
+    """Show what a table changes, and import it after confirmation. Raises CommandError."""
+    if args.machine:
+        read_machine(args.machine)  # reports a mistake in the option before anything is asked
+    may_save = args.yes or not args.json
+    with opened_store(read_only=not may_save) as store:
+        who = who_changes(store, args, Act.TOOLS, Act.SHAPES) if may_save else ""
+        word, table = _read(Path(args.file), args)
+        stored = StoredTools(store.offsets.tools.read_rows(), store.offsets.shapes.read_rows())
+        plans = stored.plans(table, positions=not args.no_positions)
+        refuse(Path(args.file), list(stored.mistakes(plans)))
+        if not args.json:
+            sys.stdout.writelines(f"{line}\n" for line in _preview(table, plans))
+        wanted = _confirmed(plans, args) if may_save else ()
+        if wanted:
+            _save(store, args, wanted, who)
+    if args.json:
+        _write_json(args.file, word, table, plans, wanted)
+    else:
+        _tell(wanted)
+    return EXIT_OK
+
+
+def _tell(saved: tuple[ToolPlan, ...]) -> None:
+    told = Message("imported: {names}; 'turndesk offsets undo' undoes the import", names=_names(saved))
+    sys.stdout.write(f"{told}\n" if saved else "nothing was changed\n")
+
+
+# --- the file and the options ------------------------------------------------------------------------------
+
+
+def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
+    """Return the format and the tools of the file. Raises CommandError."""
+    options = Reading(args.unit, args.x, _columns(args.columns), 0, _only(args.only))
+    try:
+        word = args.format or format_of(path.name)
+        return word, read_table(path, word, options)
+    except ToolTableError as error:
+        raise CommandError(str(error), error.code) from error
+
+
+def _columns(entries: Iterable[str]) -> dict[str, str]:
+    """Return the columns of --map by field. Raises CommandError."""
+    found: dict[str, str] = {}
+    parts = [part for entry in entries for part in re.split(r",(?=\s*\w+\s*=)", entry)]
+    for entry in parts:
+        key, equals, column = entry.partition("=")
+        name = key.strip().lower().replace("-", "_")
+        field = _ALIASES.get(name, name)
+        if not equals or not column.strip():
+            text = Message("--map {entry} is incomplete; write FIELD=COLUMN, such as x=Dia", entry=entry)
+            raise CommandError(text, "no-value")
+        if field not in FIELD_NAMES:
+            raise CommandError(
+                Message("--map: {text}", text=unknown(key.strip(), FIELD_NAMES)), "unknown-key"
+            )
+        if field in found:
+            raise CommandError(Message("--map specifies {key} twice; remove one", key=field), "key-twice")
+        found[field] = column.strip()
+    return found
+
+
+def _only(text: str) -> frozenset[int]:
+    """Return the tool numbers of --only. Raises CommandError."""
+    found: set[int] = set()
+    for part in filter(None, (each.strip() for each in text.split(","))):
+        match = re.fullmatch(r"[Tt]?(\d{1,2})(?:\s*-\s*[Tt]?(\d{1,2}))?", part)
+        first, last = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
+        if first not in OFFSETS or last not in OFFSETS or first > last:
+            message = Message(
+                "--only {part} is not valid; use tool numbers 1 to 32, such as 1,3-6", part=part
+            )
+            raise CommandError(message, "unknown-number")
+        found |= set(range(first, last + 1))
+    return frozenset(found)
+
+
+# --- questions ---------------------------------------------------------------------------------------------
+
+
+def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[ToolPlan, ...]:
+    """Return the plans that the user confirms. Raises CommandError without a terminal."""
+    new = tuple(plan for plan in plans if plan.status is Status.NEW)
+    changed = tuple(plan for plan in plans if plan.status is Status.CHANGED)
+    if args.yes:
+        if changed and not args.replace:
+            sys.stderr.write(
+                Message(
+                    "turndesk: not changed: {names}; add --replace to change existing tools\n",
+                    names=_names(changed),
+                )
+            )
+        return new + changed if args.replace else new
+    if not new and not changed:
+        return ()
+    if not sys.stdin.isatty():
+        raise CommandError(
+            "the import is not confirmed; add --yes, and --replace to change tools that already exist",
+            "not-confirmed",
+        )
+    wanted: tuple[ToolPlan, ...] = ()
+    if new and _answer(Message("Import the new tools {names}? Press Y and Enter: ", names=_names(new))):
+        wanted += new
+    question = Message("Replace the values of {names} as shown? Press Y and Enter: ", names=_names(changed))
+    if changed and (args.replace or _answer(question)):
+        wanted += changed
+    return wanted
+
+
+def _names(plans: Iterable[ToolPlan]) -> str:
+    return ", ".join(f"T{plan.number}" for plan in plans)
+
+
+def _answer(question: str) -> bool:
+    sys.stderr.write(question)
+    sys.stderr.flush()
+    return sys.stdin.readline().strip().upper() == "Y"
+
+
+# --- saving ------------------------------------------------------------------------------------------------
+
+
+def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], who: str) -> None:
+    """Save the plans as one step. Raises CommandError if a suspicious change is not confirmed."""
+    changes = changes_of(plans)
+    demand_meant(store, args, changes)
+    reason = Reason(args.why or Message("import {file}", file=Path(args.file).name), who)
+    store.write(lambda connection: offset_tables.change_rows(connection, changes, reason)).result()
+
+
+# --- preview -----------------------------------------------------------------------------------------------
+
+
+def _preview(table: ToolTable, plans: Iterable[ToolPlan]) -> Iterator[str]:
+    """Yield one line per changed field and per note."""
+    for plan in plans:
+        name = f"T{plan.number}"
+        if plan.status is Status.UNCHANGED:
+            yield Message("{name} is unchanged", name=name)
+        elif plan.status is Status.LEFT_OUT:
+            yield Message("{name} is not imported ({place})", name=name, place=plan.place)
+        elif plan.status is Status.NEW:
+            yield Message("{name} is new ({place})", name=name, place=plan.place)
+        else:
+            yield Message("{name} exists and changes ({place})", name=name, place=plan.place)
+        yield from (f"  {_change(each)}" for each in plan.changes)
+        yield from (Message("  note: {note}", note=note) for note in plan.notes)
+    yield from table.notes
+
+
+def _change(change: FieldChange) -> str:
+    field = FIELDS[change.kind][change.name]
+    old = "not set" if change.old in {None, ""} else _shown(field.sort, change.old)
+    return f"{field.word}: {old} → {_shown(field.sort, change.new)}"
+
+
+def _shown(sort: Sort, value: Value | None) -> str:
+    if isinstance(value, str) or value is None:
+        return str(value)
+    if sort is Sort.LENGTH:
+        return f"{inches(value):.5f} in"
+    if sort is Sort.FLAG:
+        return "yes" if value else "no"
+    return f"{value:g}°" if sort is Sort.ANGLE else f"{value:g}"
+
+
+def _write_json(
+    file: str, word: str, table: ToolTable, plans: Iterable[ToolPlan], saved: tuple[ToolPlan, ...]
+) -> None:
+    tools = [
+        {
+            "number": plan.number,
+            "place": plan.place,
+            "status": plan.status.value,
+            "saved": plan in saved,
+            "changes": [_change_json(each) for each in plan.changes],
+            "notes": list(plan.notes),
+        }
+        for plan in plans
+    ]
+    told = {"file": file, "format": word, "tools": tools, "notes": list(table.notes)}
+    sys.stdout.write(json.dumps(told) + "\n")
+
+
+def _change_json(change: FieldChange) -> dict[str, object]:
+    is_length = FIELDS[change.kind][change.name].sort is Sort.LENGTH
+    values = [
+        inches(value) if is_length and value is not None and not isinstance(value, str) else value
+        for value in (change.old, change.new)
+    ]
+    return {"table": change.kind.value, "field": change.name, "old": values[0], "new": values[1]}
+
+
+IMPORT = Output(
+    "tools import FILE --json",
+    "One object. Lengths are in inches, X is a radius. Without `--yes`, nothing is imported.",
+    keys(
+        """
+file | string | | The file.
+format | string | | Its format, as in --from.
+tools | list | | Tools of the file.
+tools[].number | integer | | Tool number T.
+tools[].place | string | | Place in the file.
+tools[].status | string | | new, changed, unchanged or left-out (the tool has no values that can be imported).
+tools[].saved | boolean | | Whether the changes were saved.
+tools[].changes | list | | Values that differ.
+tools[].changes[].table | string | | tool or shape.
+tools[].changes[].field | string | | Field, as in `offsets show --json`.
+tools[].changes[].old | string or number or boolean or null | in, ° | Stored value; null if it is not set.
+tools[].changes[].new | string or number or boolean | in, ° | Value of the file.
+tools[].notes | list | | Notes about this tool, as sentences.
+notes | list | | Notes about the file, as sentences.
+"""
+    ),
+)

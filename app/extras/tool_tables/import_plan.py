@@ -1,0 +1,139 @@
+"""Comparison of an imported tool table with the stored offsets and tool shapes.
+
+The plan contains only values that differ. Wear, the master mark and further cutting edges are not changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, NamedTuple
+
+from core.message import CodedError, Message
+from core.store.store_rows import Kind, ShapeRow, ToolRow, Value, with_fields
+
+if TYPE_CHECKING:
+    from core.extras.tool_tables.tool_entry import ToolEntry, ToolTable
+
+_NEAR = 1e-6  # mm, the rounding of a file with six decimals
+
+
+class Status(StrEnum):
+    """The relation of an imported tool to the stored tool of the same number."""
+
+    NEW = "new"
+    CHANGED = "changed"
+    UNCHANGED = "unchanged"
+    LEFT_OUT = "left-out"
+
+
+class FieldChange(NamedTuple):
+    """A changed field, with its old value (None: not set) and new value in mm and degrees."""
+
+    kind: Kind
+    name: str
+    old: Value | None
+    new: Value
+
+
+@dataclass(frozen=True, slots=True)
+class ToolPlan:
+    """The changes of one tool, with its place in the file and notes for the user."""
+
+    number: int
+    place: str
+    status: Status
+    changes: tuple[FieldChange, ...]
+    notes: tuple[str, ...]
+
+    def values(self, kind: Kind) -> dict[str, Value]:
+        """Return the new values of one table by field."""
+        return {each.name: each.new for each in self.changes if each.kind is kind}
+
+
+Changes = Mapping[Kind, Mapping[int, Mapping[str, Value]]]
+
+
+def changes_of(plans: tuple[ToolPlan, ...]) -> Changes:
+    """Return the new values of all plans by table and tool."""
+    kinds = {kind: {p.number: v for p in plans if (v := p.values(kind))} for kind in (Kind.TOOL, Kind.SHAPE)}
+    return {kind: rows for kind, rows in kinds.items() if rows}
+
+
+@dataclass(frozen=True, slots=True)
+class StoredTools:
+    """The stored offsets and shapes of the tools by number."""
+
+    tools: Mapping[int, ToolRow]
+    shapes: Mapping[int, ShapeRow]
+
+    def plans(self, table: ToolTable, *, positions: bool) -> tuple[ToolPlan, ...]:
+        """Return the changes of each tool of a table; without ``positions``, X and Z are not imported."""
+        return tuple(self._plan(entry, positions=positions) for entry in table.tools.values())
+
+    def _plan(self, entry: ToolEntry, *, positions: bool) -> ToolPlan:
+        offset, notes = self._offset(entry, positions=positions)
+        old_tool, old_shape = self.tools.get(entry.number), self.shapes.get(entry.number)
+        shape = dict(entry.shape)
+        changes = (
+            *_differences(Kind.TOOL, old_tool, offset),
+            *_differences(Kind.SHAPE, old_shape, shape),
+        )
+        known = old_tool is not None or old_shape is not None
+        if changes:
+            status = Status.CHANGED if known else Status.NEW
+        else:
+            status = Status.UNCHANGED if known else Status.LEFT_OUT
+        return ToolPlan(entry.number, entry.place, status, changes, (*entry.notes, *notes))
+
+    def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, Value], list[str]]:
+        """Return the values of the offset that can be stored, and notes about the others."""
+        offset, notes = dict(entry.offset), []
+        if not positions and {"x", "z"} & offset.keys():
+            notes.append("X and Z are not imported")
+            offset = {name: value for name, value in offset.items() if name not in {"x", "z"}}
+        if offset and entry.number not in self.tools and not {"x", "z"} <= offset.keys():
+            names = ", ".join(name.replace("_", " ") for name in offset)
+            notes.append(
+                Message(
+                    "not imported before the tool is touched off: {names}; touch off T{number}, then import "
+                    "the file again with --replace",
+                    names=names,
+                    number=entry.number,
+                )
+            )
+            offset = {}
+        return offset, notes
+
+    def mistakes(self, plans: tuple[ToolPlan, ...]) -> Iterator[CodedError]:
+        """Yield the contradictions in the tool shapes that would result from the plans."""
+        from app.desk.stored_shapes import row_mistakes
+
+        for plan in plans:
+            shape = with_fields(self.shapes.get(plan.number, ShapeRow()), plan.values(Kind.SHAPE))
+            tool = with_fields(self.tools.get(plan.number, ToolRow()), plan.values(Kind.TOOL))
+            for wrong in row_mistakes(shape, tool) if shape.kind and plan.changes else ():
+                text = Message(
+                    "{place} (T{number}): {field}: {text}",
+                    place=plan.place,
+                    number=plan.number,
+                    field=wrong.field,
+                    text=wrong.text,
+                )
+                yield CodedError(text, wrong.code)
+
+
+def _differences(
+    kind: Kind, old: ToolRow | ShapeRow | None, values: Mapping[str, Value]
+) -> Iterator[FieldChange]:
+    for name, new in values.items():
+        before: Value | None = None if old is None else getattr(old, name)
+        if before is None or not _is_same(before, new):
+            yield FieldChange(kind, name, before, new)
+
+
+def _is_same(old: Value, new: Value) -> bool:
+    if isinstance(old, str) or isinstance(new, str):
+        return old == new
+    return abs(old - new) <= _NEAR

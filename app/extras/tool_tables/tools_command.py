@@ -1,0 +1,81 @@
+"""Command ``turndesk tools``: tool tables of other programs, imported and exported."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from app.cli.actions.meant_changes import add_consent_options
+from app.cli.who_changes import add_as_option
+from core.extras.tool_tables.table_file import FORMATS
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+
+_FORMATS = ", ".join(FORMATS)
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Add the parser of the command and its actions."""
+    parser = subparsers.add_parser("tools")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    _add_import(actions)
+
+
+def _add_import(actions: SubParsers) -> None:
+    """Add the action that imports a table."""
+    action = actions.add_parser(
+        "import", help="show what a tool table of another program would change, and import it"
+    )
+    action.add_argument("file", metavar="FILE", help="tool table to read")
+    action.add_argument(
+        "--from",
+        dest="format",
+        choices=list(FORMATS),
+        help="format of the file (default: recognized from the suffix of its name)",
+    )
+    action.add_argument(
+        "--map",
+        dest="columns",
+        metavar="FIELD=COLUMN",
+        action="append",
+        default=[],
+        help="column of a CSV file for a field, such as x=Dia; several separated by commas, or as several "
+        "options",
+    )
+    action.add_argument(
+        "--unit", choices=["in", "mm"], default="", help="unit of a file that does not specify its unit"
+    )
+    action.add_argument(
+        "--x",
+        choices=["radius", "diameter"],
+        default="",
+        help="meaning of X in a CSV file whose headings do not specify it",
+    )
+    action.add_argument("--only", metavar="TOOLS", default="", help="tools to import, such as 1,3-6")
+    action.add_argument(
+        "--no-positions",
+        action="store_true",
+        help="do not import X and Z, which are only valid if the file comes from this machine",
+    )
+    action.add_argument(
+        "--replace", action="store_true", help="also change tools that already have an offset or a shape"
+    )
+    action.add_argument(
+        "--json", action="store_true", help="print only JSON on stdout; without --yes, nothing is imported"
+    )
+    add_consent_options(action)
+    add_as_option(action)
+    action.add_argument(
+        "--why",
+        metavar="TEXT",
+        default="",
+        help="reason for the change, saved in the history (default: import FILE)",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the action. Raises CommandError."""
+    from app.extras.tool_tables.import_command import import_table
+
+    return import_table(args)

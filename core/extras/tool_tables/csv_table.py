@@ -1,0 +1,225 @@
+"""Tool tables as CSV, such as those of Mach or a spreadsheet: a line of headings, then one tool per line.
+
+Fields are separated by commas, semicolons or tabs. A number may have a decimal comma.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from core.extras.tool_tables.csv_columns import (
+    FIELD_NAMES,
+    NOSE_DIAMETER,
+    NUMBER,
+    X_DIAMETER,
+    Column,
+    column_of,
+)
+from core.extras.tool_tables.tool_entry import (
+    DIAMETER,
+    MM_PER_UNIT,
+    TABLE_FIELDS,
+    TableReader,
+    ToolEntry,
+)
+from core.message import Message, nearest
+from core.store.store_rows import Field, Sort, Value
+
+MOST_LINES = 10_000
+_SEPARATORS = ";\t,"  # The first of them that the heading contains.
+_FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false": False}
+_HEADINGS = {NUMBER: "T", "x": "X radius"}
+
+
+def read(table: TableReader, text: str) -> None:
+    """Add the tools of a CSV file to ``table``."""
+    lines = text.splitlines(keepends=True)
+    start = next((n for n, line in enumerate(lines) if line.strip(" \t\r\n,;")), 0)
+    if len(lines) > MOST_LINES:
+        message = Message("the file has more than {most} lines; it is not a tool table", most=MOST_LINES)
+        table.reject(Message("line {line}", line=MOST_LINES + 1), "too-long", message)
+        return
+    heading = lines[start] if lines else ""
+    separator = next((each for each in _SEPARATORS if each in heading), ",")
+    rows = csv.reader(io.StringIO("".join(lines[start:])), delimiter=separator, strict=True)
+    try:
+        columns = _columns(table, start + 1, next(rows, []))
+        if not table.mistakes:
+            for row in rows:
+                if any(cell.strip() for cell in row):
+                    _read_row(table, Message("line {line}", line=start + rows.line_num), row, columns)
+    except csv.Error as error:
+        place = Message("line {line}", line=start + rows.line_num)
+        table.reject(place, "not-csv", Message("not valid CSV ({error}); check the quotes", error=error))
+
+
+def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[Column, ...]:
+    """Return the columns with a known field. Adds a mistake for each heading that is wrong."""
+    place = Message("line {line}", line=line)
+    assigned = _assigned(table, place, headings)
+    found = [
+        column
+        for index, heading in enumerate(headings)
+        if (column := column_of(index, heading, assigned.get(index, "")))
+    ]
+    mapped = set(assigned.values())
+    found = [each for each in found if each.place in assigned or each.field not in mapped]
+    fields = [each.field for each in found]
+    for field in sorted({each for each in fields if fields.count(each) > 1}):
+        text = Message("two columns are {field}; use --map {field}=COLUMN to select one", field=field)
+        table.reject(place, "column-twice", text)
+    if NUMBER not in fields:
+        text = Message(
+            "no column has the tool number; use --map number=COLUMN. The columns are: {names}",
+            names=", ".join(heading.strip()[:40] for heading in headings[:40]) or "none",
+        )
+        table.reject(place, "no-number-column", text)
+    _check_x(table, place, found)
+    unused = [
+        h.strip()[:40] for i, h in enumerate(headings) if h.strip() and i not in {c.place for c in found}
+    ]
+    if unused:
+        table.notes.append(Message("columns that are not imported: {names}", names=", ".join(unused[:40])))
+    return tuple(found)
+
+
+def _assigned(table: TableReader, place: str, headings: Sequence[str]) -> dict[int, str]:
+    """Return the fields that --map assigns, by column place."""
+    names = [heading.strip().lower() for heading in headings]
+    found: dict[int, str] = {}
+    for field, column in table.options.columns.items():
+        if column.strip().lower() in names:
+            found[names.index(column.strip().lower())] = field
+            continue
+        near = nearest(column, [heading.strip() for heading in headings])
+        text = Message(
+            "the file has no column {column}; {remedy}",
+            column=column,
+            remedy=Message("did you mean {near}?", near=near)
+            if near
+            else Message("its columns are: {names}", names=", ".join(h.strip()[:40] for h in headings[:40])),
+        )
+        table.reject(place, "unknown-column", text)
+    return found
+
+
+def _check_x(table: TableReader, place: str, columns: Iterable[Column]) -> None:
+    """Add a mistake if the file and the options do not specify whether X is a radius or a diameter."""
+    for each in columns:
+        if each.field == "x" and not (each.is_radius or table.options.x):
+            text = Message(
+                "column {name} can be a radius or a diameter; add --x radius or --x diameter",
+                name=each.heading,
+            )
+            table.reject(place, "x-unclear", text)
+
+
+def _read_row(table: TableReader, place: str, row: Sequence[str], columns: Iterable[Column]) -> None:
+    """Add the tool of one row."""
+    mistakes = len(table.mistakes)
+    cells = {each.field: (each, row[each.place].strip()) for each in columns if each.place < len(row)}
+    column, text = cells.pop(NUMBER, (None, ""))
+    where = Message("{place}, column {column}", place=place, column=column.heading if column else NUMBER)
+    if not text:
+        table.reject(where, "no-number", "the line has no tool number; add T1 to T32")
+        return
+    number = table.tool_number(where, table.number(where, text.upper().removeprefix("T")))
+    if number is None or len(table.mistakes) > mistakes:
+        return
+    values = {
+        field: value
+        for field, (each, cell) in cells.items()
+        if cell and (value := _value(table, place, each, cell)) is not None
+    }
+    if len(table.mistakes) == mistakes:
+        _convert_diameters(table, values)
+        table.add(number, place, values, str(values.get("remark", "")))
+
+
+def _convert_diameters(table: TableReader, values: dict[str, Value]) -> None:
+    """Replace diameters of X and of the nose with radii."""
+    if table.options.x == "diameter" and X_DIAMETER not in values and "x" in values:
+        values[X_DIAMETER] = values.pop("x")
+    for diameter, radius in ((X_DIAMETER, "x"), (NOSE_DIAMETER, "nose_radius")):
+        if diameter in values:
+            values[radius] = float(values.pop(diameter)) / 2.0
+
+
+def _value(table: TableReader, place: str, column: Column, cell: str) -> Value | None:
+    """Return the value of a cell, lengths in mm. None, with a mistake added, if it is invalid."""
+    where = Message("{place}, column {column}", place=place, column=column.heading)
+    field = _field(column.field)
+    if field.sort is Sort.TEXT:
+        return _text(table, where, field, cell)
+    if field.sort is Sort.FLAG:
+        if cell.lower() in _FLAGS:
+            return _FLAGS[cell.lower()]
+        table.reject(where, "not-a-flag", Message("{text} is not valid; use 1 or 0", text=repr(cell[:40])))
+        return None
+    value = table.number(where, cell.replace(",", ".") if cell.count(",") == 1 else cell)
+    if value is None or field.sort is not Sort.LENGTH:
+        return int(value) if value is not None and field.sort is Sort.WHOLE and value.is_integer() else value
+    if not value:
+        return value
+    return value * (MM_PER_UNIT[column.unit] if column.unit else table.unit(where))
+
+
+def _field(name: str) -> Field:
+    same = {X_DIAMETER: "x", NOSE_DIAMETER: "nose_radius", DIAMETER: "diameter"}
+    return TABLE_FIELDS[same.get(name, name)]
+
+
+def _text(table: TableReader, where: str, field: Field, cell: str) -> str | None:
+    """Return a text, or one of the field's choices."""
+    if not field.choices:
+        return cell
+    word = cell.lower().replace(" ", "-")
+    word = {"r": "right", "l": "left", "n": "neutral", "center-drill": "centre-drill"}.get(word, word)
+    if word in field.choices:
+        return word
+    text = Message("{text} is unknown; use {range}", text=repr(cell[:40]), range=field.range)
+    table.reject(where, "unknown-word", text)
+    return None
+
+
+# --- writing -----------------------------------------------------------------------------------------------
+
+
+def written(tools: Iterable[ToolEntry], unit: str) -> str:
+    """Return a CSV table with these tools, lengths in ``unit``. The headings contain the unit."""
+    rows = list(tools)
+    names = [name for name in TABLE_FIELDS if any({**t.offset, **t.shape}.get(name) for t in rows)]
+    out = io.StringIO()
+    table = csv.writer(out, lineterminator="\n")
+    table.writerow([_HEADINGS[NUMBER], *(_heading(name, unit) for name in names)])
+    table.writerows(_cells(tool, names, MM_PER_UNIT[unit]) for tool in rows)
+    return out.getvalue()
+
+
+def _heading(name: str, unit: str) -> str:
+    text = _HEADINGS.get(name, name.replace("_", " ").capitalize())
+    return f"{text} ({unit})" if TABLE_FIELDS[name].sort is Sort.LENGTH else text
+
+
+def _cells(tool: ToolEntry, names: Iterable[str], factor: float) -> Iterator[str]:
+    values: Mapping[str, Value] = {**tool.offset, **tool.shape}
+    yield str(tool.number)
+    for name in names:
+        value = values.get(name, "")
+        if isinstance(value, bool):
+            yield "1" if value else "0"
+        elif isinstance(value, float) and TABLE_FIELDS[name].sort is Sort.LENGTH:
+            yield f"{value / factor:.6f}"
+        else:
+            yield f"{value:g}" if isinstance(value, float) else _harmless(value)
+
+
+def _harmless(value: Value) -> str:
+    """Return a text that a spreadsheet does not calculate as a formula."""
+    text = str(value)
+    return f" {text}" if text[:1] in {"=", "+", "-", "@"} else text
+
+
+__all__ = ["FIELD_NAMES", "read", "written"]

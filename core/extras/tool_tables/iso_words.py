@@ -1,0 +1,79 @@
+"""ISO codes and kinds of tools in the remarks of tool tables, such as ``CNMG 120408 MCLNR 2020K12 rough``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+
+from core.part.insert_codes import InsertCodeError, decoded, holder_of
+from core.part.tool_shape import ROUND_TOOLS
+
+ROUND_KINDS = frozenset(kind.value for kind in ROUND_TOOLS)
+_INSERT = re.compile(r"[A-Z]{3,4}-?\d[\dTSM.]{2,6}[A-Z]{0,3}(?:-[A-Z0-9]+)?")
+_HOLDER = re.compile(r"(?:[ACES]\d\d[A-Z]?-?)?[CDMPSWX][CDEKMPRSTVWHO][A-Y][A-Z]([RLN])[-\dA-Z]*")
+_BAR = re.compile(r"[ACES]\d\d")
+_HANDS = {"R": "right", "L": "left", "N": "neutral"}
+_KIND_WORDS: tuple[tuple[str, str], ...] = (
+    (r"cent(?:er|re)[\s-]?drill", "centre-drill"),
+    (r"spot[\s-]?drill|drill", "drill"),
+    (r"end[\s-]?mill|slot\s?drill", "end-mill"),
+    (r"ream(?:er)?", "reamer"),
+    (r"tap", "tap"),
+    (r"thread(?:ing)?", "threading"),
+    (r"part(?:ing)?[\s-]?off|parting|cut[\s-]?off", "parting"),
+    (r"groov(?:e|ing)", "grooving"),
+    (r"bor(?:e|ing)(?:[\s-]?bar)?", "boring"),
+)
+_KINDS = tuple((re.compile(rf"\b(?:{words})\b", re.IGNORECASE), kind) for words, kind in _KIND_WORDS)
+
+
+def shape_words(text: str) -> dict[str, str]:
+    """Return the fields of a tool shape that the codes and words of a text specify, by name."""
+    words = text.upper().replace(",", " ").replace(";", " ").split()
+    candidates = [*(f"{one}{two}" for one, two in pairwise(words)), *words]
+    insert = next(_inserts(candidates), "")
+    holder, hand = next(_holders(candidates), ("", ""))
+    kind = kind_word(text) or _kind_of(insert, holder)
+    if kind in ROUND_KINDS:
+        return {"kind": kind}
+    found = {"kind": kind, "hand": hand, "insert": insert, "holder": holder}
+    return {name: value for name, value in found.items() if value}
+
+
+def kind_word(text: str) -> str:
+    """Return the kind of tool that the words of a text name, or an empty text."""
+    return next((kind for words, kind in _KINDS if words.search(text)), "")
+
+
+def is_insert(code: str) -> bool:
+    """Return whether a text is a valid code of an insert."""
+    try:
+        decoded(code)
+    except InsertCodeError:
+        return False
+    return True
+
+
+def _inserts(words: list[str]) -> Iterator[str]:
+    return (word for word in words if _INSERT.fullmatch(word) and is_insert(word))
+
+
+def _holders(words: list[str]) -> Iterator[tuple[str, str]]:
+    for word in words:
+        match = _HOLDER.fullmatch(word)
+        if match and holder_of(word) is not None:
+            yield word, _HANDS[match[1]]
+
+
+def _kind_of(insert: str, holder: str) -> str:
+    """Return the kind that the codes imply: a round bar bores."""
+    if holder and _BAR.match(holder):
+        return "boring"
+    return "turning" if insert or holder else ""
+
+
+def hand_of(letter: str) -> str:
+    """Return the hand for a letter R, L or N, or an empty text."""
+    hands: Mapping[str, str] = _HANDS
+    return hands.get(letter.strip().upper(), "")

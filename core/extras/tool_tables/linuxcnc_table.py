@@ -1,0 +1,122 @@
+"""Tool table of LinuxCNC: one tool per line, ``T3 P3 X1.5 Z-2 D.0315 I85 J25 Q2 ;CNMG431 rough``.
+
+X is a radius. D is the nose diameter of a turning tool. The orientation Q is the position of the nose center
+relative to the control point, with X reversed compared with the tip quadrant: Q2 is quadrant 3.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from core.extras.tool_tables.tool_entry import DIAMETER, MM_PER_UNIT, TableReader, ToolEntry
+from core.message import Message
+from core.store.store_rows import Value
+
+QUADRANTS = {1: 4, 2: 3, 3: 2, 4: 1, 5: 5, 6: 8, 7: 7, 8: 6, 9: 9}
+"""Tip quadrant by orientation Q."""
+ORIENTATIONS = {quadrant: orientation for orientation, quadrant in QUADRANTS.items()}
+
+_LENGTHS = {"X": "x", "Z": "z", "D": DIAMETER}
+_WORDS = frozenset("TPXYZABCUVWDIJQ")
+_UNUSED = frozenset("YABCUVW")  # axes that the lathe does not have; P, I and J have no equivalent either
+_WORD = re.compile(r"\S+")
+
+
+def read(table: TableReader, text: str) -> None:
+    """Add the tools of a table to ``table``."""
+    for count, line in enumerate(text.splitlines(), start=1):
+        words, _, remark = line.partition(";")
+        if words.strip():
+            _read_line(table, count, words, remark.strip())
+
+
+def _read_line(table: TableReader, count: int, line: str, remark: str) -> None:
+    """Add the tool of one line."""
+    mistakes = len(table.mistakes)
+    place = Message("line {line}", line=count)
+    found = _words(table, count, line)
+    if "T" not in found:
+        if len(table.mistakes) == mistakes:
+            table.reject(place, "no-number", "the line has no tool number; add T1 to T32")
+        return
+    number = table.tool_number(place, found["T"])
+    if number is None or len(table.mistakes) > mistakes:
+        return
+    factor = table.unit(place) if any(found.get(letter) for letter in _LENGTHS) else 1.0
+    values: dict[str, Value] = {
+        name: found[letter] * factor for letter, name in _LENGTHS.items() if letter in found
+    }
+    values[DIAMETER] = abs(float(values.get(DIAMETER, 0.0)))
+    if (orientation := found.get("Q", 0.0)) not in {0.0, *QUADRANTS}:
+        text = Message("Q{value} is not an orientation; use 0 to 9", value=f"{orientation:g}")
+        table.reject(place, "unknown-orientation", text)
+        return
+    values["quadrant"] = QUADRANTS.get(int(orientation), 0)
+    values["remark"] = remark
+    unused = sorted(letter for letter in _UNUSED & found.keys() if found[letter])
+    notes = [Message("not imported: {words}", words=" ".join(unused))] if unused else []
+    table.add(number, place, values, remark, notes)
+
+
+def _words(table: TableReader, count: int, line: str) -> dict[str, float]:
+    """Return the numbers of a line by letter. Adds mistakes with their column."""
+    found: dict[str, float] = {}
+    for match in _WORD.finditer(line):
+        place = Message("line {line}, column {column}", line=count, column=match.start() + 1)
+        letter = match[0][0].upper()
+        if letter not in _WORDS:
+            text = Message(
+                "{word} is not a word of a LinuxCNC tool table; use T P X Z D I J Q, and start a remark "
+                "with a semicolon",
+                word=repr(match[0][:20]),
+            )
+            table.reject(place, "unknown-word", text)
+            continue
+        if letter in found:
+            text = Message("{letter} is on the line twice; remove one", letter=letter)
+            table.reject(place, "word-twice", text)
+            continue
+        value = table.number(place, match[0][1:])
+        if value is not None:
+            found[letter] = value
+    return found
+
+
+def written(tools: Iterable[ToolEntry], unit: str) -> str:
+    """Return the table with these tools, in ``unit``."""
+    return "".join(f"{line}\n" for line in _lines(tools, MM_PER_UNIT[unit]))
+
+
+def _lines(tools: Iterable[ToolEntry], factor: float) -> Iterator[str]:
+    for tool in tools:
+        words = [f"T{tool.number}", f"P{tool.number}"]
+        for letter, name in (("X", "x"), ("Z", "z")):
+            if name in tool.offset:
+                words.append(f"{letter}{float(tool.offset[name]) / factor:+.6f}")
+        if diameter := diameter_of(tool):
+            words.append(f"D{diameter / factor:.6f}")
+        if quadrant := int(tool.offset.get("quadrant", 0)):
+            words.append(f"Q{ORIENTATIONS[quadrant]}")
+        if remark := remark_of(tool):
+            words.append(f";{remark}")
+        yield " ".join(words)
+
+
+def diameter_of(tool: ToolEntry) -> float:
+    """Return the diameter of a rotating tool, or else twice the nose radius, in mm; 0 if not specified."""
+    from core.extras.tool_tables.iso_words import ROUND_KINDS  # noqa: PLC0415
+
+    if tool.shape.get("kind") in ROUND_KINDS:
+        return float(tool.shape.get("diameter", 0.0))
+    return 2.0 * float(tool.offset.get("nose_radius", 0.0))
+
+
+def remark_of(tool: ToolEntry) -> str:
+    """Return the remark with the kind and the codes that it does not contain yet."""
+    words = [str(tool.offset.get("remark", ""))]
+    for name in ("insert", "holder", "kind"):
+        value = str(tool.shape.get(name, ""))
+        if value and value != "turning" and "," not in value and value.upper() not in " ".join(words).upper():
+            words.append(value)
+    return " ".join(word for word in words if word)

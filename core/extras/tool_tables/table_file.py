@@ -1,0 +1,91 @@
+"""Reading of tool tables: the formats by name and file name, and limits for hostile files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from core.extras.tool_tables import csv_table, linuxcnc_table
+from core.extras.tool_tables.tool_entry import Reading, TableReader, ToolTable, ToolTableError
+from core.input_file import MB, TooLargeError, input_bytes
+from core.message import Message
+
+MOST_BYTES = 16 * MB
+_CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")
+
+
+class Format(NamedTuple):
+    """A format of tool tables: its name for users, its suffixes, and the function that reads its text."""
+
+    title: str
+    suffixes: tuple[str, ...]
+    read: Callable[[TableReader, str], None]
+
+
+FORMATS: Mapping[str, Format] = {
+    "linuxcnc": Format("LinuxCNC tool table", (".tbl",), linuxcnc_table.read),
+    "mach": Format("Mach tool table", (".dat",), csv_table.read),
+    "csv": Format("CSV", (".csv", ".txt", ".tsv"), csv_table.read),
+}
+"""The formats that can be read, by the word of the option --from."""
+
+
+def format_of(name: str) -> str:
+    """Return the format that the suffix of a file name implies. Raises ToolTableError if it is unknown."""
+    suffix = Path(name).suffix.lower()
+    for word, each in FORMATS.items():
+        if suffix in each.suffixes:
+            return word
+    text = Message(
+        "{name}: the format cannot be recognized from the file name; add --from with one of {formats}",
+        name=name,
+        formats=", ".join(FORMATS),
+    )
+    raise ToolTableError(text, "unknown-format")
+
+
+def read_table(path: Path, word: str, options: Reading) -> ToolTable:
+    """Return the tools of a file in the format ``word``. Raises ToolTableError."""
+    table = TableReader(path.name, options)
+    FORMATS[word].read(table, _text(path.name, _bytes(path), word))
+    return table.table()
+
+
+def _bytes(path: Path) -> bytes:
+    """Return the contents of a file. Raises ToolTableError."""
+    try:
+        return input_bytes(path, MOST_BYTES)
+    except TooLargeError as error:
+        text = Message("{path} is larger than 16 MB, so it is not a tool table; check the name", path=path)
+        raise ToolTableError(text, "too-large") from error
+    except OSError as error:
+        text = Message(
+            "{path} cannot be read ({cause}); check the name and the permissions",
+            path=path,
+            cause=error.strerror,
+        )
+        raise ToolTableError(text, "unreadable") from error
+
+
+def _text(name: str, data: bytes, word: str) -> str:
+    """Return the text of a file. Raises ToolTableError if the file is binary or not UTF-8."""
+    if binary := _CONTROL.search(data):
+        remedy = (
+            "export the table from Mach as CSV" if word == "mach" else "check the file and the option --from"
+        )
+        text = Message(
+            "{name}: byte {place} is not text, so this is a binary file; {remedy}",
+            name=name,
+            place=binary.start(),
+            remedy=remedy,
+        )
+        raise ToolTableError(text, "binary-table")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        text = Message(
+            "{name}: byte {place} is not UTF-8; save the file as UTF-8", name=name, place=error.start
+        )
+        raise ToolTableError(text, "not-utf8") from error

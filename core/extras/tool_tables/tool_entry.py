@@ -1,0 +1,242 @@
+"""Tools read from a table of another program, and the collection of its tools and mistakes.
+
+Lengths are in mm with X as a radius, and angles in degrees. Values use the field names of the offset tables.
+All mistakes of a file are reported together in one error.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import NamedTuple
+
+from core.extras.tool_tables.iso_words import ROUND_KINDS, shape_words
+from core.message import CodedError, Message
+from core.part.insert_codes import InsertCodeError, decoded
+from core.store.store_rows import FIELDS, MM_PER_INCH, OFFSETS, REMARK_LONGEST, Field, Kind, Sort, Value
+
+OFFSET_FIELDS = ("x", "z", "nose_radius", "quadrant", "remark")
+TABLE_FIELDS: Mapping[str, Field] = {
+    **{name: FIELDS[Kind.TOOL][name] for name in OFFSET_FIELDS},
+    **FIELDS[Kind.SHAPE],
+}
+"""The fields that a table can set. Wear and the master mark are never imported."""
+DIAMETER = "d"
+"""The pseudo field D: the nose diameter of a turning tool, or the diameter of a rotating tool, in mm."""
+
+MM_PER_UNIT = {"in": MM_PER_INCH, "mm": 1.0}
+_MOST_SHOWN = 10  # mistakes in one error text
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?")
+_LONGEST_NUMBER = 40
+_SAME_RADIUS = 0.05  # mm, more than the rounding of an inch radius to tenths of a mm
+
+
+class ToolTableError(CodedError):
+    """A table cannot be read. The message lists all mistakes with their places, and how to correct them."""
+
+
+class Reading(NamedTuple):
+    """Options for reading a table, where the file itself does not specify them.
+
+    ``unit`` is a key of ``MM_PER_UNIT``, and ``x`` is "radius" or "diameter". ``columns`` are the columns of
+    a CSV file by field. ``number`` is the tool number of a file that contains one tool without a number. Only
+    the tools in ``only`` are read, or all if it is empty.
+    """
+
+    unit: str = ""
+    x: str = ""
+    columns: Mapping[str, str] = {}
+    number: int = 0
+    only: frozenset[int] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class ToolEntry:
+    """One tool of a table, with its place in the file and notes about values that are not imported."""
+
+    number: int
+    place: str
+    offset: Mapping[str, Value]
+    shape: Mapping[str, Value]
+    notes: tuple[str, ...] = ()
+
+
+class ToolTable(NamedTuple):
+    """The tools of a file by number, and notes about the file."""
+
+    tools: Mapping[int, ToolEntry]
+    notes: Sequence[str] = ()
+
+
+@dataclass(slots=True)
+class TableReader:
+    """Collects the tools and the mistakes of the file ``name``."""
+
+    name: str
+    options: Reading
+    tools: dict[int, ToolEntry] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    mistakes: list[CodedError] = field(default_factory=list)
+
+    def reject(self, place: str, code: str, text: str) -> None:
+        """Add a mistake at this place of the file."""
+        self.mistakes.append(CodedError(Message("{place}: {text}", place=place, text=text), code))
+
+    def number(self, place: str, text: str) -> float | None:
+        """Return the number in a text. None, with a mistake added, if it is not a finite number."""
+        words = text.strip()
+        if len(words) <= _LONGEST_NUMBER and _NUMBER.fullmatch(words) and isfinite(value := float(words)):
+            return value
+        shown = words if len(words) <= _LONGEST_NUMBER else f"{words[:_LONGEST_NUMBER]}…"
+        self.reject(place, "not-a-number", Message("{text} is not a number; correct it", text=repr(shown)))
+        return None
+
+    def tool_number(self, place: str, value: float | None) -> int | None:
+        """Return the number of a tool to read.
+
+        The result is None if the options exclude the tool, or, with a mistake added, if the number is invalid
+        or used twice.
+        """
+        if value is None:
+            return None
+        whole = int(value) if value.is_integer() else None
+        if whole in self.options.only or not self.options.only:
+            if whole not in OFFSETS:
+                text = Message(
+                    "T{number} does not exist here; tool numbers are 1 to 32. Change the number, or use "
+                    "--only to import only some tools",
+                    number=f"{value:g}",
+                )
+                self.reject(place, "unknown-number", text)
+                return None
+            if whole in self.tools:
+                text = Message(
+                    "T{number} is already in {earlier}; remove one of them",
+                    number=whole,
+                    earlier=self.tools[whole].place,
+                )
+                self.reject(place, "tool-twice", text)
+                return None
+            return whole
+        return None
+
+    def unit(self, place: str) -> float:
+        """Return mm per unit of the file; 1, with a mistake added, if the unit is not specified."""
+        if self.options.unit:
+            return MM_PER_UNIT[self.options.unit]
+        known = {mistake.code for mistake in self.mistakes}
+        if "unit-missing" not in known:
+            self.reject(
+                place, "unit-missing", "the file does not specify its unit; add --unit in or --unit mm"
+            )
+        return 1.0
+
+    def add(
+        self, number: int, place: str, values: Mapping[str, Value], words: str = "", notes: Sequence[str] = ()
+    ) -> None:
+        """Add a tool. ``words`` is a text in which ISO codes and kinds of tools are recognized.
+
+        The values 0 and "" mean not specified. X and Z that are both 0 mean that the tool is not measured.
+        """
+        found: dict[str, Value] = {**shape_words(words), **_stated(values)}
+        told = [*notes, *_cleaned(found), *_unmeasured(values, found), *_diameter(found)]
+        for name, value in found.items():
+            self._check(place, name, value)
+        told += _radius_notes(found)
+        offset = {name: value for name, value in found.items() if name in OFFSET_FIELDS}
+        shape = {name: value for name, value in found.items() if name not in offset}
+        if shape and not shape.get("kind"):
+            told.append(Message("not imported without a kind of tool: {names}", names=", ".join(shape)))
+            shape = {}
+        self.tools[number] = ToolEntry(number, place, offset, shape, tuple(told))
+
+    def _check(self, place: str, name: str, value: Value) -> None:
+        known = TABLE_FIELDS[name]
+        if known.takes(value):
+            return
+        shown: Value = value
+        if known.sort is Sort.LENGTH and not isinstance(value, str):
+            shown = Message("{inches} in", inches=f"{value / MM_PER_INCH:g}")
+        text = Message(
+            "{word} {value} is out of range; use {range}, and check the unit of the file",
+            word=known.word,
+            value=shown,
+            range=known.range,
+        )
+        self.reject(place, "out-of-range", text)
+
+    def table(self) -> ToolTable:
+        """Return the tools. Raises ToolTableError with all mistakes, or if the file has no tools."""
+        if self.mistakes:
+            raise self._error()
+        if not self.tools:
+            text = Message("{name} has no tools to import; check the file and --only", name=self.name)
+            raise ToolTableError(text, "no-tools")
+        return ToolTable(dict(sorted(self.tools.items())), tuple(self.notes))
+
+    def _error(self) -> ToolTableError:
+        shown = "; ".join(str(each) for each in self.mistakes[:_MOST_SHOWN])
+        if more := len(self.mistakes) - _MOST_SHOWN:
+            shown += Message("; further mistakes: {count}", count=more) if more > 0 else ""
+        codes = dict.fromkeys(each.code for each in self.mistakes)
+        return ToolTableError(Message("{name}: {text}", name=self.name, text=shown), " ".join(codes))
+
+
+def _stated(values: Mapping[str, Value]) -> dict[str, Value]:
+    """Return the values that are specified; X or Z may be 0."""
+    return {name: value for name, value in values.items() if value or name in {"x", "z"}}
+
+
+def _cleaned(found: dict[str, Value]) -> list[str]:
+    """Make the remark printable and short. Return a note if it is shortened."""
+    text = found.get("remark")
+    if not isinstance(text, str):
+        return []
+    plain = " ".join("".join(each if each.isprintable() else " " for each in text).split())
+    found["remark"] = plain[:REMARK_LONGEST]
+    if not plain:
+        del found["remark"]
+    return ["the remark is shortened to 40 characters"] if len(plain) > REMARK_LONGEST else []
+
+
+def _unmeasured(values: Mapping[str, Value], found: dict[str, Value]) -> list[str]:
+    """Remove X and Z that are 0, with which other programs fill tools that are not measured."""
+    if found.get("x", 0.0) or found.get("z", 0.0):
+        return []
+    found.pop("x", None)
+    found.pop("z", None)
+    return ["X and Z are 0, so the tool is not measured"] if {"x", "z"} <= values.keys() else []
+
+
+def _diameter(found: dict[str, Value]) -> list[str]:
+    """Replace the pseudo field D with the field that it means for this kind of tool."""
+    if (value := found.pop(DIAMETER, None)) is None or isinstance(value, str):
+        return []
+    if found.get("kind") in ROUND_KINDS:
+        found.setdefault("diameter", value)
+        return [Message("D is the diameter of the {kind}", kind=found["kind"])]
+    found.setdefault("nose_radius", value / 2.0)
+    return []
+
+
+def _radius_notes(found: Mapping[str, Value]) -> list[str]:
+    """Return a note if the nose radius is not the radius of the insert."""
+    radius, code = found.get("nose_radius"), found.get("insert")
+    if not isinstance(radius, float) or not isinstance(code, str):
+        return []
+    try:
+        insert = decoded(code)
+    except InsertCodeError:
+        return []
+    if not insert.corners or abs(insert.nose_radius - radius) <= _SAME_RADIUS:
+        return []
+    return [
+        Message(
+            "check the nose radius: {radius} in the table, but {insert} in insert {code} (mm)",
+            radius=f"{radius:.3f}",
+            insert=f"{insert.nose_radius:.3f}",
+            code=code,
+        )
+    ]

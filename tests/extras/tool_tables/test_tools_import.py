@@ -1,0 +1,200 @@
+"""``turndesk tools import``: preview, questions, one step of the history, and what is left unchanged."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from app.extras.tool_tables.import_command import IMPORT
+from core.access.access_table import Level
+from core.message import CodedError
+from core.store.people import PersonRow, keep_person
+from core.store.store import Store
+from core.store.store_rows import Kind, ShapeRow, ToolRow
+from tests.cli.conftest import Turndesk
+from tests.cli.json_output import declared_alone, whole
+from tests.cli.say import Say, codes
+
+TABLE = "T1 P1 X1.5 Z-2 D0.0315 Q2 ;CNMG431\nT3 P3 X1 Z-1 D.01 Q3\nT4 D.25 ;drill\n"
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    path = tmp_path / "tool.tbl"
+    path.write_text(TABLE)
+    return path
+
+
+def rows(home: Path) -> tuple[dict[int, ToolRow], dict[int, ShapeRow]]:
+    with Store.open(home, read_only=True) as store:
+        return store.offsets.tools.read_rows(), store.offsets.shapes.read_rows()
+
+
+def set_tool(home: Path, number: int, **values: float | str) -> None:
+    with Store.open(home) as store:
+        store.offsets.tools.change_row(number, "touched off", values).result(60)
+
+
+def test_new_tools_are_imported(turndesk: Turndesk, table: Path, home: Path) -> None:
+    told = turndesk("tools", "import", table, "--unit", "in", "--yes")
+    assert (told.status, told.err) == (0, "")
+    tools, shapes = rows(home)
+    assert tools[1][:5] == pytest.approx((38.1, -50.8, 0.40005, 0.0, 0.0))
+    assert tools[1][5:] == (3, "CNMG431", False)
+    assert tools[3].quadrant == 2
+    assert (shapes[1].kind, shapes[1].insert) == ("turning", "CNMG431")
+    assert shapes[4].diameter == pytest.approx(6.35)
+    assert 4 not in tools  # it has no position yet
+
+
+def test_the_import_is_one_step_with_its_reason(turndesk: Turndesk, table: Path, home: Path) -> None:
+    turndesk("tools", "import", table, "--unit", "in", "--yes", "--why", "old control")
+    with Store.open(home) as store:
+        changes = store.offsets.read_history()
+    assert {(each.step, each.why) for each in changes} == {(1, "old control")}
+    assert {each.kind for each in changes} == {Kind.TOOL, Kind.SHAPE}
+    assert turndesk("offsets", "undo").status == 0
+    assert rows(home) == ({}, {})
+    assert turndesk("offsets", "undo").code == "nothing-to-undo"
+
+
+def test_the_file_is_the_usual_reason(turndesk: Turndesk, table: Path, home: Path) -> None:
+    turndesk("tools", "import", table, "--unit", "in", "--yes")
+    with Store.open(home) as store:
+        assert {each.why for each in store.offsets.read_history()} == {"import tool.tbl"}
+
+
+def test_an_offset_in_use_is_not_replaced_unasked(turndesk: Turndesk, table: Path, home: Path) -> None:
+    set_tool(home, 1, x=38.0, z=-50.0, wear_x=0.1)
+    told = turndesk("tools", "import", table, "--unit", "in", "--yes")
+    assert told.status == 0
+    assert "T1" in told.err
+    tools, shapes = rows(home)
+    assert (tools[1].x, tools[1].wear_x, 1 in shapes, 3 in tools) == (38.0, 0.1, False, True)
+
+
+def test_replace_changes_it_and_wear_stays(turndesk: Turndesk, table: Path, home: Path) -> None:
+    set_tool(home, 1, x=38.0, z=-50.0, wear_x=0.1, master=True)
+    assert turndesk("tools", "import", table, "--unit", "in", "--yes", "--replace").status == 0
+    tools, _shapes = rows(home)
+    assert (tools[1].x, tools[1].wear_x, tools[1].master) == (pytest.approx(38.1), 0.1, True)
+
+
+def test_positions_can_be_left_out(turndesk: Turndesk, table: Path, home: Path) -> None:
+    set_tool(home, 1, x=10.0, z=-20.0)
+    words = ("--unit", "in", "--yes", "--replace", "--no-positions")
+    assert turndesk("tools", "import", table, *words).status == 0
+    tools, _shapes = rows(home)
+    assert (tools[1].x, tools[1].z, tools[1].quadrant) == (10.0, -20.0, 3)
+    assert 3 not in tools
+
+
+def test_only_the_named_tools(turndesk: Turndesk, table: Path, home: Path) -> None:
+    assert turndesk("tools", "import", table, "--unit", "in", "--yes", "--only", "3-4").status == 0
+    tools, shapes = rows(home)
+    assert (list(tools), list(shapes)) == ([3], [4])
+
+
+def test_a_second_import_changes_nothing(turndesk: Turndesk, table: Path, home: Path) -> None:
+    for _ in range(2):
+        turndesk("tools", "import", table, "--unit", "in", "--yes", "--replace")
+    with Store.open(home) as store:
+        assert {each.step for each in store.offsets.read_history()} == {1}
+
+
+def test_json_is_a_preview(turndesk: Turndesk, table: Path, home: Path) -> None:
+    set_tool(home, 1, x=25.4, z=-50.8)
+    csv = table.with_name("tool.csv")
+    csv.write_text("T,X,Z,Kind,Colour\n1,1.5,-2,turning,red\n2,0,0,,\n")
+    words = ("--from", "csv", "--map", "remark=Colour", "--x", "radius", "--unit", "in", "--json")
+    told = whole(turndesk("tools", "import", csv, *words))
+    (first, second) = told["tools"]
+    assert first["status"] == "changed"
+    assert {"table": "tool", "field": "x", "old": 1.0, "new": 1.5} in first["changes"]
+    assert (first["saved"], second["status"], bool(second["notes"])) == (False, "left-out", True)
+    assert rows(home)[0][1].x == 25.4
+    declared_alone([told], IMPORT.keys)
+
+
+def test_json_with_yes_saves(turndesk: Turndesk, table: Path, home: Path) -> None:
+    told = whole(turndesk("tools", "import", table, "--unit", "in", "--yes", "--json"))
+    assert [each["saved"] for each in told["tools"]] == [True, True, True]
+    assert list(rows(home)[0]) == [1, 3]
+
+
+def test_on_a_terminal_each_group_is_asked(say: Say, table: Path, home: Path) -> None:
+    set_tool(home, 1, x=38.0, z=-50.7)
+    status, told = say("tools", "import", table, "--unit", "in", typed="n y", terminal=True)
+    assert status == 0
+    assert "T3" in told
+    tools, _shapes = rows(home)
+    assert (tools[1].quadrant, 3 in tools) == (3, False)
+
+
+def test_without_a_terminal_nothing_is_imported(
+    say: Say, table: Path, home: Path, refusals: list[CodedError]
+) -> None:
+    assert say("tools", "import", table, "--unit", "in", typed="y y")[0] == 2
+    assert codes(refusals) == ["not-confirmed"]
+    assert rows(home) == ({}, {})
+
+
+def test_a_large_change_is_confirmed_separately(say: Say, table: Path, home: Path) -> None:
+    set_tool(home, 1, x=10.0, z=-50.0)
+    status, _told = say("tools", "import", table, "--unit", "in", "--only", "1", typed="y n", terminal=True)
+    assert (status, rows(home)[0][1].x) == (2, 10.0)
+
+
+def test_a_position_beyond_the_travel_is_rejected(turndesk: Turndesk, table: Path, home: Path) -> None:
+    table.write_text("T1 X49 Z-2\n")
+    told = turndesk("tools", "import", table, "--unit", "in", "--machine", "gt75", "--yes")
+    assert (told.status, told.code) == (2, "beyond-travel")
+    assert rows(home) == ({}, {})
+
+
+def test_an_impossible_shape_is_rejected(turndesk: Turndesk, tmp_path: Path, home: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("T,Kind,Diameter (mm),Pitch (mm)\n1,tap,3,2\n")
+    told = turndesk("tools", "import", path, "--yes")
+    assert (told.status, told.code) == (2, "pitch-too-coarse")
+    assert "line 2" in told.err
+    assert rows(home) == ({}, {})
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (("--map", "x"), "no-value"),
+        (("--map", "wear_x=X"), "unknown-key"),
+        (("--map", "x=A,x=B"), "key-twice"),
+        (("--only", "0"), "unknown-number"),
+        (("--only", "5-3"), "unknown-number"),
+        (("--only", "33"), "unknown-number"),
+        (("--machine", "missing"), "unreadable"),
+        ((), "unit-missing"),
+    ],
+)
+def test_wrong_options(turndesk: Turndesk, table: Path, words: tuple[str, ...], code: str) -> None:
+    told = turndesk("tools", "import", table, "--yes", *words)
+    assert (told.status, told.code, told.err.count("\n")) == (2, code, 1)
+
+
+def test_a_file_of_unknown_format(turndesk: Turndesk, tmp_path: Path) -> None:
+    told = turndesk("tools", "import", tmp_path / "tool.xyz", "--yes")
+    assert (told.status, told.code) == (2, "unknown-format")
+
+
+def test_a_level_below_setup_may_not_import(
+    say: Say, table: Path, home: Path, refusals: list[CodedError]
+) -> None:
+    with Store.open(home) as store:
+        for name, level in (("ANNA", Level.SERVICE), ("OLE", Level.OPERATOR)):
+            row = PersonRow(name, level, b"salt", b"hash")
+            store.write(partial(keep_person, row=row)).result(60)
+    assert say("tools", "import", table, "--unit", "in", "--yes", "--as", "OLE")[0] == 2
+    assert codes(refusals) == ["level-too-low"]
+    assert rows(home) == ({}, {})
+    assert json.loads(say("tools", "import", table, "--unit", "in", "--json")[1])["tools"]
