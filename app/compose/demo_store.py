@@ -1,4 +1,4 @@
-"""The demo: a separate store with the offsets of the sample programs, which the user can change."""
+"""The demo: a separate store with the offsets and stock of the sample programs, which the user can change."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from app.compose.machine.machine_setup import read_machine
 from app.compose.workshop import samples
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import HOME, data_folder
+from app.desk.kept_part import KeptPart
 from app.desk.programs.program_choice import LAST_PROGRAM
 from app.desk.screen_settings import KEY as SCREEN
 from app.offsets.offsets_file import read_rows
+from core.interpreter.shared.units import MM_PER_INCH
 from core.language.source import Dialect, dialect_of
 from core.message import Message
 from core.store.offsets.offset_tables import Reason
@@ -30,8 +32,8 @@ _WHY = "offsets of the sample programs"
 def open_demo(machine_file: str | None) -> Path:
     """Switch this process to the data folder of the demo and return the folder.
 
-    The first time, the folder gets the offsets of the sample programs. Later changes remain. Raises
-    CommandError for a real machine, and if the store cannot be written.
+    The first time, the folder gets the offsets and the stock of the sample programs. Later changes remain.
+    Raises CommandError for a real machine, and if the store cannot be written.
     """
     machine = read_machine(machine_file)
     if not played(machine) or has_inverter(machine):
@@ -73,6 +75,9 @@ def _last_program() -> Path | None:
     return None
 
 
+_PARTS = {"bushing.nc": KeptPart("tube:1.0:.4:2.4", 1.2 * MM_PER_INCH)}  # stock and stick-out of the samples
+
+
 def _seed(folder: Path) -> None:
     tools, secondary, zero = read_rows(samples() / "offsets.toml")
     lengths = {n: row for n, row in tools.items() if row.x == 0.0 and row.z > 0.0}  # tools of the mills
@@ -86,6 +91,9 @@ def _seed(folder: Path) -> None:
         with Store.open(folder) as store:
             store.write(lambda c: import_all(c, {}, offsets, Reason(_WHY, "import"))).result()
             store.settings.save_setting(SCREEN, {"first_job": True}).result()
+            for program, part in _PARTS.items():
+                for key, value in part.settings(program).items():
+                    store.settings.save_setting(key, value).result()
     except StoreError as error:
         raise CommandError(
             Message("the data folder of the demo cannot be used: {error}", error=error), "no-demo-store"

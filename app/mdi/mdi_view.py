@@ -182,6 +182,7 @@ class MdiPage(ModelPage):
         self.codes = CodeChoices(self.look, model.completion.codes, model.take_code, self)
         self.letters = LetterPad(self.look, self.touched, self, LINES)
         self.path = PathView(self.look, self)
+        self.path.shows_whole_approach = True
         self.path.hide()
         self.inforce = ModalPanel(self.look, self)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
@@ -12,7 +13,7 @@ from PySide6.QtGui import QBrush, QImage, QPainter, QPolygonF
 from app.path.part_player import PartPlayer, PlayedInstant, SolidLook
 from app.path.path_aspects import Aspect, Tip
 from app.path.path_layers_view import polygon
-from app.path.path_pane_view import Pane, Place
+from app.path.path_pane_view import MARGIN, Pane, Place
 from app.path.path_picture import Picture
 from app.path.path_projection import (
     Floats,
@@ -25,13 +26,14 @@ from app.path.path_projection import (
     metal_of,
     stock_outline,
 )
+from app.path.path_stock_view import BESIDE, Blank
 from app.path.polyline import Polyline
-from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.look import CENTRE, RIGHT, Look, put
 from core.part.solid_view import SolidView
 from core.part.solid_view import fitted as fitted_solid
+from core.part.stock import Stock
 
-_BESIDE = 0.1  # ratio to the length and diameter of the stock: room for the tool
-_MARGIN = 3.0  # units around the part for the scales
+_X_BAND, _Z_BAND = 4.2, 2.6  # units: width of the scale of X, and height of the scale of Z
 _TICK = 6.0  # minimum distance between two values of a scale, in units
 _STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
@@ -60,14 +62,25 @@ class PartPane(Pane):
     # --- projection ----------------------------------------------------------------------------------
 
     def whole(self) -> Projection:
-        """Return the projection that shows the stock and room for the tool."""
+        """Return the projection that shows the stock outside the chuck, and room for the tool."""
         z0, z1, x0, x1 = self.polyline.bounds
         shown = self.player.played
         if shown is not None and (stock := shown.instant.stock) is not None:
-            beside = _BESIDE * (stock.front - stock.back + 2.0 * stock.radius)
-            z0, z1, x0, x1 = stock.back, stock.front + beside, 0.0, stock.radius + 0.5 * beside
-        room, margin = self.room, _MARGIN * self.look.u
-        return fitted((z0, z1, x0, x1), int(room.width()), int(room.height()), margin)
+            left = self._left_of(shown, stock)
+            beside = BESIDE * (stock.front - left + 2.0 * stock.radius)
+            z0, z1, x0, x1 = left, stock.front + beside, 0.0, stock.radius + 0.5 * beside
+        u = self.look.u
+        left_band, low_band = _X_BAND * u, _Z_BAND * u
+        wide, high = self.room.width() - left_band, self.room.height() - low_band
+        inner = fitted((z0, z1, x0, x1), int(wide), int(high), MARGIN * u)
+        whole = replace(inner, width=int(self.room.width()), height=int(self.room.height()))
+        return whole.moved(left_band / 2, -low_band / 2)
+
+    @staticmethod
+    def _left_of(shown: PlayedInstant, stock: Stock) -> float:
+        """Return the Z of the left edge of the visible stock. Most of the stock in a chuck is not shown."""
+        chuck = Blank(stock, stock, shown.instant.clamping).chuck_from
+        return stock.back if chuck is None else max(stock.back, chuck)
 
     def look_at(self, projection: Projection) -> None:
         """Set the projection, and ask the player for the section only."""
@@ -217,17 +230,21 @@ class PartPane(Pane):
         unit = 1.0 if self.metric else 25.4
         step = next((s for s in _STEPS if s * unit * projection.scale >= _TICK * u), _STEPS[-1])
         bottom, width = float(projection.height), float(projection.width)
+        ground, left, low = look.colour("panel"), _X_BAND * u, bottom - _Z_BAND * u
+        painter.fillRect(QRectF(0, 0, left, bottom), ground)
+        painter.fillRect(QRectF(0, low, width, bottom - low), ground)
         painter.setPen(look.pen("soft", 0.1))
         for value in _ticks(projection.z, width / projection.scale, step * unit):
             at = float(projection.across(value * unit * step))
-            painter.drawLine(QPointF(at, bottom), QPointF(at, bottom - 0.6 * u))
-            words = _figure(value * step)
-            put(painter, QRectF(at - 4 * u, bottom - 2.2 * u, 8 * u, 1.4 * u), CENTRE, words)
+            if at > left:
+                painter.drawLine(QPointF(at, low), QPointF(at, low + 0.6 * u))
+                words = _figure(value * step)
+                put(painter, QRectF(at - 4 * u, low + 0.8 * u, 8 * u, 1.6 * u), CENTRE, words)
         for value in _ticks(projection.x, bottom / projection.scale, step * unit):
             at = float(projection.down(value * unit * step))
-            if 1.5 * u < at < bottom - 3.5 * u:
-                painter.drawLine(QPointF(0, at), QPointF(0.6 * u, at))
-                put(painter, QRectF(0.9 * u, at - u, 8 * u, 2 * u), LEFT, _figure(abs(value * step)))
+            if 3.2 * u < at < low - u:  # The title of the pane is above.
+                painter.drawLine(QPointF(left - 0.6 * u, at), QPointF(left, at))
+                put(painter, QRectF(0, at - u, left - 0.9 * u, 2 * u), RIGHT, _figure(abs(value * step)))
 
 
 def draw_reach(painter: QPainter, look: Look, corners: Sequence[QPointF]) -> None:
@@ -283,7 +300,8 @@ class SolidPane(PartPane):
             return flat
         wide, high = flat.width, max(flat.height - round(3.0 * self.look.u), 1)
         room = _ROUND * stock.radius  # leaves room for the tool
-        scale, centre = fitted_solid(stock.back, stock.front, room, wide, high, self._azimuth)
+        left = self._left_of(shown, stock)
+        scale, centre = fitted_solid(left, stock.front, room, wide, high, self._azimuth)
         return Projection(centre, 0.0, scale, flat.width, flat.height)
 
     def look_at(self, projection: Projection) -> None:

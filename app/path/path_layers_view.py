@@ -75,11 +75,16 @@ def _round(pen: QPen, style: Qt.PenStyle) -> QPen:
 class Layers:
     """Images of one path in one projection.
 
-    ``before`` is the path before a change, drawn below it.
+    ``before`` is the path before a change, drawn below it. ``ground`` draws the background of the path.
     """
 
     def __init__(
-        self, look: Look, polyline: Polyline, projection: Projection, before: Polyline | None = None
+        self,
+        look: Look,
+        polyline: Polyline,
+        projection: Projection,
+        before: Polyline | None = None,
+        ground: Callable[[QPainter], None] | None = None,
     ) -> None:
         self.polyline = polyline
         self.projection = projection
@@ -92,6 +97,9 @@ class Layers:
         size = QSize(max(1, projection.width), max(1, projection.height))
         self._base = QImage(size, QImage.Format.Format_RGB32)
         self._base.fill(look.colour("panel"))
+        if ground is not None:
+            with QPainter(self._base) as painter:
+                ground(painter)
         self.image = self._base
         self._stage = 0  # index of the polyline that is being drawn into the base image
         self._drawn = 0  # number of its points that are drawn

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from PySide6.QtCore import QPointF, QRectF, Qt
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QPen, QPolygonF
 
 from app.desk.status import formats
@@ -16,7 +17,7 @@ from app.path.measuring import Apart
 from app.path.path_aspects import IN_SPACE, OF_PART, Aspect, DrawnLeg
 from app.path.path_layers_view import Ink
 from app.path.path_pane_view import Pane
-from app.path.path_projection import Projection, scale_length
+from app.path.path_projection import Ends, Projection, clipped, scale_length
 from app.path.polyline import Polyline
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Press
@@ -91,35 +92,54 @@ def compared_legend(look: Look) -> list[LegendEntry]:
     return [(tr("before"), Ink.BEFORE.pens(look)[2]), (tr("after"), Ink.AFTER.pens(look)[2])]
 
 
-def draw_legend(painter: QPainter, look: Look, room: QRectF, entries: Sequence[LegendEntry]) -> None:
-    """Draw the legend as a row at the lower left."""
-    u = look.u
-    x, y = room.x() + 1.2 * u, room.bottom() - 2.2 * u
+def draw_foot(
+    painter: QPainter,
+    look: Look,
+    foot: QRectF,
+    panes: Sequence[tuple[QRectF, Projection | None]],
+    legend: Sequence[LegendEntry],
+    metric: bool,
+) -> None:
+    """Draw the row below the panes: the legend, and the scale of each pane below its right edge."""
+    painter.fillRect(foot, look.colour("panel"))
     painter.setFont(look.font(1.5))
+    for room, projection in panes:
+        below = QRectF(room.x(), foot.y(), room.width(), foot.height())
+        left = (
+            _draw_scale(painter, look, below, projection, metric) if projection is not None else below.right()
+        )
+        if room.x() <= foot.x():
+            _draw_legend(painter, look, QRectF(below.topLeft(), QPointF(left, below.bottom())), legend)
+
+
+def _draw_legend(painter: QPainter, look: Look, box: QRectF, entries: Sequence[LegendEntry]) -> None:
+    """Draw as many entries of the legend as fit, from the left."""
+    u, x = look.u, box.x() + 1.2 * look.u
     metrics = QFontMetricsF(painter.font())
     for word, pen in entries:
         wide = metrics.horizontalAdvance(word) + 0.4 * u
-        if x + 3.6 * u + wide > room.right() - 0.2 * room.width() - 6 * u:
+        if x + 3.6 * u + wide > box.right():
             return
         painter.setPen(pen)
-        painter.drawLine(QPointF(x, y + u), QPointF(x + 3 * u, y + u))
+        painter.drawLine(QPointF(x, box.center().y()), QPointF(x + 3 * u, box.center().y()))
         painter.setPen(look.colour("soft"))
-        put(painter, QRectF(x + 3.6 * u, y, wide, 2 * u), LEFT, word)
+        put(painter, QRectF(x + 3.6 * u, box.y(), wide, box.height()), LEFT, word)
         x += 5.0 * u + wide
 
 
-def draw_scale(painter: QPainter, look: Look, room: QRectF, projection: Projection, metric: bool) -> None:
-    """Draw a scale bar with a round length at the lower right of a pane, in the unit in force."""
+def _draw_scale(painter: QPainter, look: Look, box: QRectF, projection: Projection, metric: bool) -> float:
+    """Draw a scale bar with a round length in the unit in force, and return its left edge with its text."""
     u = look.u
-    mm, text = scale_length(min(14 * u, 0.2 * room.width()) / projection.scale, metric)
+    mm, text = scale_length(min(14 * u, 0.2 * box.width()) / projection.scale, metric)
     wide = mm * projection.scale
-    right, y = room.right() - 1.4 * u, room.bottom() - 1.0 * u
+    right, y = box.right() - 1.4 * u, box.center().y() + 0.4 * u
     painter.setPen(look.pen("soft", 0.16))
     for a, b in (((-wide, 0.0), (0.0, 0.0)), ((-wide, -0.7), (-wide, 0.0)), ((0.0, -0.7), (0.0, 0.0))):
         painter.drawLine(QPointF(right + a[0], y + a[1] * u), QPointF(right + b[0], y + b[1] * u))
-    painter.setFont(look.font(1.5))
-    painter.setPen(look.colour("soft"))
-    put(painter, QRectF(right - wide - 12 * u, y - 1.2 * u, 11.2 * u, 2 * u), RIGHT, text)
+    left = right - wide - 0.8 * u
+    long = QFontMetricsF(painter.font()).horizontalAdvance(text)
+    put(painter, QRectF(left - 12 * u, box.y(), 12 * u, box.height()), RIGHT, text)
+    return left - long
 
 
 def draw_border(painter: QPainter, look: Look, room: QRectF) -> None:
@@ -148,26 +168,49 @@ def draw_nothing(painter: QPainter, look: Look, room: QRectF, why: str) -> None:
 
 
 def draw_approach(painter: QPainter, look: Look, pane: Pane, legs: Sequence[DrawnLeg]) -> None:
-    """Draw all legs from the present tool position.
+    """Draw the visible parts of all legs from the present tool position.
 
     The painter's origin is the corner of the pane.
     """
     u = look.u
     spots = [pane.spot(leg.z, leg.x) for leg in legs]
+    size = pane.room.size()
+    labels = []
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for leg, (start, end) in zip(legs[1:], pairwise(spots), strict=True):
+        seen = visible_part(start, end, size)
+        if seen is None:
+            continue
         pen = look.pen("lit", 0.34)
         pen.setStyle(Qt.PenStyle.DashLine if leg.rapid else Qt.PenStyle.SolidLine)
         painter.setPen(pen)
-        painter.drawLine(start, end)
-        _arrow(painter, look, start, end)
+        painter.drawLine(*seen)
+        _arrow(painter, look, *seen)
+        labels.append(((seen[0] + seen[1]) / 2, leg.label))
     painter.setPen(look.pen("lit", 0.34))
     painter.setBrush(look.colour("panel"))
     for spot in spots[:1]:
         painter.drawEllipse(spot, 0.8 * u, 0.8 * u)
-    middles = [(start + end) / 2 for start, end in pairwise(spots)]
-    for box, text in leg_labels(look, middles, [leg.label for leg in legs[1:]]):
-        _label(painter, look, box, text)
+    room = QRectF(QPointF(), size)
+    for box, text in leg_labels(look, [at for at, _ in labels], [label for _, label in labels]):
+        _label(painter, look, inside_room(box, room), text)
+
+
+def visible_part(start: QPointF, end: QPointF, size: QSizeF) -> tuple[QPointF, QPointF] | None:
+    """Return the part of a line that is inside a pane of this size, or None if no part is visible."""
+    ends = Ends(*(np.array([value]) for value in (start.x(), start.y(), end.x(), end.y())))
+    cut, inside = clipped(ends, round(size.width()), round(size.height()))
+    if not inside[0]:
+        return None
+    c0, r0, c1, r1 = (float(value[0]) for value in cut)
+    return QPointF(c0, r0), QPointF(c1, r1)
+
+
+def inside_room(box: QRectF, room: QRectF) -> QRectF:
+    """Return the box, moved as far as necessary to be inside the room."""
+    across = max(room.x() - box.x(), 0.0) + min(room.right() - box.right(), 0.0)
+    down = max(room.y() - box.y(), 0.0) + min(room.bottom() - box.bottom(), 0.0)
+    return box.translated(across, down)
 
 
 def _arrow(painter: QPainter, look: Look, start: QPointF, end: QPointF) -> None:

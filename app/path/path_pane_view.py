@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPointF, QRectF, Qt
@@ -13,6 +14,7 @@ from app.path.path_aspects import OF_PART, Aspect, Tip, View, polyline_of, views
 from app.path.path_layers_view import Ink, Layers, polygon, stroke_run
 from app.path.path_picture import Picture, face_point
 from app.path.path_projection import Projection, boxed, fitted, runs, travelled
+from app.path.path_stock_view import Blank, blank_of, draw_blank
 from app.path.polyline import Bounds, Polyline
 from app.screen.look import Look
 
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
 ZOOM_STEP = 1.25
 PAN_STEP = 0.1  # ratio to the width of the pane
-MARGIN = 2.8  # units around the fitted path
+MARGIN = 1.4  # units around the fitted path
 
 Place = tuple[float, float]
 PICK = 1.6  # units: maximum distance from a line at which a touch selects the line
@@ -47,6 +49,7 @@ class Pane:
         self.by_hand = False  # set when the user zooms or pans
         self.projection: Projection | None = None
         self.polyline, self.before = polyline, before
+        self._blank = self._blank_below()
         self.apart = farthest(before, polyline) if before is not None else None
         self._layers: Layers | None = None
         self._block = 0
@@ -59,22 +62,39 @@ class Pane:
     def take(self, polyline: Polyline, before: Polyline | None) -> None:
         """Show another path. The projection remains if the user adjusted it."""
         self.polyline, self.before, self._block, self.marked = polyline, before, 0, []
+        self._blank = self._blank_below()
         self.apart = farthest(before, polyline) if before is not None else None
         if self.by_hand and self.projection is not None:
             self.look_at(self.projection)
         else:
             self.fit()
 
+    def _blank_below(self) -> Blank | None:
+        """Return the stock and clamping that are drawn below the path, or None."""
+        picture = self.polyline
+        wanted = self.aspect is Aspect.PATH and self.before is None
+        return blank_of(picture) if wanted and isinstance(picture, Picture) else None
+
     def whole(self) -> Projection:
-        """Return the projection that shows everything, including the path before a change."""
+        """Return the projection that shows the part, all cuts near it, and the path before a change.
+
+        The chuck uses the width that remains.
+        """
         fit = boxed if self.aspect is Aspect.SIDE else fitted
-        bounds = self.polyline.bounds
+        bounds, blank = self.polyline.bounds, self._blank
+        if blank is not None:
+            bounds = blank.cuts_seen(bounds)
         if self.before is not None:
             bounds = _around(bounds, self.before.bounds)
         for z, x in self.also:
             bounds = _around(bounds, (z, z, x, x))
         margin = (RING if self.aspect is Aspect.FACE else MARGIN) * self.look.u
-        return fit(bounds, int(self.room.width()), int(self.room.height()), margin)
+        whole = fit(bounds, int(self.room.width()), int(self.room.height()), margin)
+        if blank is None or blank.chuck_from is None:
+            return whole
+        free = self.room.width() - 2 * margin - (bounds[1] - bounds[0]) * whole.scale
+        wanted = max(0.0, bounds[0] - blank.chuck_from) * whole.scale
+        return whole.moved(max(0.0, min(free, wanted)) / 2, 0.0)
 
     def restart(self) -> None:
         """Draw the same view again, with new colors."""
@@ -84,7 +104,11 @@ class Pane:
     def look_at(self, projection: Projection) -> None:
         """Set the projection and redraw the pane."""
         self.projection = projection
-        self._layers = Layers(self.look, self.polyline, projection, self.before)
+        blank = self._blank
+        ground = None
+        if blank is not None:
+            ground = partial(draw_blank, look=self.look, blank=blank, projection=projection)
+        self._layers = Layers(self.look, self.polyline, projection, self.before, ground)
         self._layers.want(self._block - 1)
         self._layers.advance()
 

@@ -266,6 +266,16 @@ def stock_outline(stock: Stock, projection: Projection) -> list[Line]:
     return found
 
 
+def stock_areas(stock: Stock, projection: Projection) -> list[Line]:
+    """Return the areas of the section of the stock on both sides of the axis."""
+    z, r = np.array(stock.outside).T
+    inner_z, inner_r = np.array(stock.bore or ((stock.back, 0.0), (stock.front, 0.0))).T
+    return [
+        _ring(_line(z, side * r, projection), _line(inner_z, side * inner_r, projection))
+        for side in (1.0, -1.0)
+    ]
+
+
 def clamping_areas(clamping: Clamping, stock: Stock, projection: Projection) -> list[Line]:
     """Return the areas of the chuck or collet on both sides, and of the tailstock center."""
     found: list[Line] = []

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from app.screen.page_base import KeyActions
 
 BAR = 6.8  # units: height of the time line below the part
+FOOT = 2.4  # units: height of the row with the legend and the scales below the panes
 Picked = Callable[[int], None]
 
 
@@ -47,6 +48,7 @@ class PathView(Panel):
     part_name = "PATH"
     title = "PATH"
     keeps = False  # whether adjusted projections remain when the picture changes
+    shows_whole_approach = False  # whether the visible area includes all legs of an approach
 
     def __init__(
         self,
@@ -186,9 +188,9 @@ class PathView(Panel):
         self.update()
 
     def _include(self) -> None:
-        """Include the whole approach in the visible area."""
+        """Include the whole approach in the visible area, if the view shows it."""
         for pane in self.panes:
-            if pane.aspect is Aspect.PATH:
+            if pane.aspect is Aspect.PATH and self.shows_whole_approach:
                 pane.include([(leg.z, leg.x) for leg in self.legs])
 
     def _show_tool(self) -> None:
@@ -219,7 +221,7 @@ class PathView(Panel):
     def room(self) -> QRectF:
         """Return the area inside the frame. The panes use the area that the buttons leave free."""
         u = self.look.u
-        bar = BAR if self.shows_part else 0.0
+        bar = BAR if self.shows_part else FOOT
         return self.area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -(0.2 + bar) * u).toRect().toRectF()
 
     # --- navigation ----------------------------------------------------------------------------------
@@ -409,7 +411,11 @@ class PathView(Panel):
             self._draw_bar(painter)
             return
         legend = marks.compared_legend(look) if self.comparing else marks.run_legend(look)
-        marks.draw_legend(painter, look, panes[0].room, legend)
+        room = self.room()
+        foot = QRectF(room.x(), room.bottom(), room.width(), FOOT * look.u)
+        marks.draw_foot(
+            painter, look, foot, [(pane.room, pane.projection) for pane in panes], legend, self.in_mm
+        )
         apart = panes[0].apart
         if apart is not None:
             marks.draw_words(painter, look, panes[0].room, marks.apart_words(apart, self.in_mm))
@@ -440,8 +446,6 @@ class PathView(Panel):
         if self.ruler is not None and self.ruler.pane is pane and pane.aspect not in IN_SPACE:
             self.ruler.draw(painter)
         painter.restore()
-        if pane.projection is not None and pane.aspect not in OF_PART:
-            marks.draw_scale(painter, look, pane.room, pane.projection, self.in_mm)
         if pane.aspect is not Aspect.PATH:
             ink = "alarm" if pane.aspect in OF_PART and marks.errors_of(pane) else "soft"
             marks.draw_words(painter, look, pane.room, marks.pane_words(pane, self.in_mm), ink)

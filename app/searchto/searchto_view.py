@@ -138,6 +138,7 @@ class SearchtoPage(ModelPage):
         self.listing.touched = self._mark
         self.state = StatePanel(self.look, host.press, self)
         self.path = PathView(self.look, self, player=player_of(host.desk))
+        self.path.shows_whole_approach = True
         self.starts = StartsPanel(self.look, self)
         self.space = WorkingPlaneView(self.look, self)  # Replaces the path view on a mill.
         self.pad = KeyPad(self.look, self.touched, own=None, parent=self)

@@ -13,6 +13,7 @@ from app.compose.machine.machine_setup import read_machine, setup_for
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import book_of, stored_offsets
 from app.desk.command_errors import CommandError
+from app.desk.kept_part import NOTHING_KEPT, kept_part
 from app.desk.pages.first_job import FirstJob
 from app.desk.programs.program_choice import LAST_PROGRAM
 from core.language.diagnostics import Severity
@@ -41,6 +42,14 @@ def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> 
     assert book.tools[1].x == pytest.approx(-0.5 * INCH)
     journal.close()
     assert not (home / "turndesk.db").exists()  # nothing of it in the store of the machine
+
+
+def test_the_stock_of_its_lathe_program_is_specified_and_in_a_collet(home: Path) -> None:
+    with Store.open(open_demo(None), read_only=True) as store:
+        kept = kept_part(store.settings.read_setting, "bushing.nc")
+        assert kept_part(store.settings.read_setting, "pinbar.nc") == NOTHING_KEPT
+    assert (kept.stock, kept.stick_out) == ("tube:1.0:.4:2.4", pytest.approx(1.2 * INCH))
+    assert read_machine(None).clamping.diameter == pytest.approx(2.5 * INCH)
 
 
 def test_the_tool_table_of_a_mill_has_what_its_samples_use(home: Path) -> None:

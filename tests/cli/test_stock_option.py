@@ -130,8 +130,11 @@ def test_a_first_program_with_errors_leaves_nothing(
 
 
 def chuck(tmp_path: Path, *lines: str) -> Path:
+    """A machine file of the shipped lathe with another chuck, or without one."""
     text = Path("resources/machines/gt75.toml").read_text(encoding="utf-8")
-    return written(tmp_path, text + "\n[clamping]\n" + "\n".join(lines) + "\n", "chuck.toml")
+    before, _, rest = text.partition("[clamping]")
+    table = "\n".join(("[clamping]", *lines)) if lines else ""
+    return written(tmp_path, f"{before}{table}\n[{rest.partition('[')[2]}", "chuck.toml")
 
 
 def test_a_stick_out_brings_the_chuck_into_the_proof(
@@ -158,7 +161,8 @@ def test_a_stick_out_of_the_machine_file_counts_without_a_word(
 def test_a_stick_out_without_a_chuck_is_refused(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, value: str, code: str
 ) -> None:
-    told = turndesk("prove", written(tmp_path, PART), "--offsets", offsets, "--stick-out", value)
+    given = ("prove", written(tmp_path, PART), "--offsets", offsets, "--machine", chuck(tmp_path))
+    told = turndesk(*given, "--stick-out", value)
     assert (told.status, told.code) == (2, code)
     assert "--stick-out" in told.err
 

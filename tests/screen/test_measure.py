@@ -300,6 +300,7 @@ def test_a_comparison_ends_with_the_next_picture(view: PathView) -> None:
 
 
 def test_the_way_back_is_seen_whole_unless_one_looks_elsewhere(view: PathView) -> None:
+    view.shows_whole_approach = True
     before = view.view
     view.show_approach(
         [DrawnLeg(60.0, 40.0), DrawnLeg(60.0, 8.0, label="1 X"), DrawnLeg(-5.0, 8.0, label="2 Z")]

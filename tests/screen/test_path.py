@@ -6,11 +6,18 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QPointF, QRectF, QSizeF
 from PySide6.QtGui import QColor, QImage, QPainter
 
 from app.path.path_layers_view import PIXELS, SMOOTH_TO, Ink, Layers, polygon
-from app.path.path_marks_view import Button, button_columns, columns_wide, draw_buttons
+from app.path.path_marks_view import (
+    Button,
+    button_columns,
+    columns_wide,
+    draw_buttons,
+    inside_room,
+    visible_part,
+)
 from app.path.path_picture import Picture
 from app.path.path_projection import (
     Ends,
@@ -239,3 +246,19 @@ def test_all_buttons_fit_a_finger_in_a_low_view(high: float) -> None:
         assert room.contains(box)
         assert box.x() >= room.right() - columns_wide(button_columns(look, room, 5), look) - look.u
     assert not any(one.intersects(other) for one, other in combinations(boxes, 2))
+
+
+PANE = QSizeF(400.0, 200.0)
+
+
+def test_a_leg_is_cut_at_the_edge_of_the_pane() -> None:
+    cut = visible_part(QPointF(900.0, 100.0), QPointF(300.0, 100.0), PANE)
+    assert cut == (QPointF(400.0, 100.0), QPointF(300.0, 100.0))
+    assert visible_part(QPointF(10.0, 20.0), QPointF(30.0, 40.0), PANE) == (QPointF(10, 20), QPointF(30, 40))
+    assert visible_part(QPointF(900.0, 100.0), QPointF(500.0, 100.0), PANE) is None
+
+
+def test_a_label_moves_into_the_pane() -> None:
+    room = QRectF(0.0, 0.0, 400.0, 200.0)
+    assert inside_room(QRectF(390.0, -5.0, 40.0, 20.0), room) == QRectF(360.0, 0.0, 40.0, 20.0)
+    assert inside_room(QRectF(50.0, 50.0, 40.0, 20.0), room) == QRectF(50.0, 50.0, 40.0, 20.0)

@@ -1,0 +1,105 @@
+"""Stock and clamping below the path: the visible area that they need, and their drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QBrush, QPainter
+
+from app.path.path_layers_view import polygon
+from app.path.path_picture import Picture
+from app.path.path_projection import Line, Projection, clamping_areas, stock_areas, stock_outline
+from app.path.polyline import Bounds
+from app.screen.look import Look
+from core.interpreter.shared.units import MM_PER_INCH
+from core.part.stock import Clamping, Stock, bar
+from core.part.stock_spec import StockError, StockSpec
+
+BESIDE = 0.12  # ratio to the length and diameter of the part: visible room for the tool
+_CHUCK_SHOWN = 0.6  # ratio to the diameter of the part: visible length of the chuck
+_FILLED = 0.28  # opacity of the stock
+
+
+@dataclass(frozen=True, slots=True)
+class Blank:
+    """The specified stock and the clamping of a program, in millimeters.
+
+    ``clamped`` is the material in the chuck. It is the stock, or a bar that the cuts need.
+    """
+
+    stock: Stock | None
+    clamped: Stock
+    clamping: Clamping | None
+
+    def cuts_seen(self, cuts: Bounds) -> Bounds:
+        """Return the area of the stock outside the chuck, and of all cuts near the stock.
+
+        Without a specified stock, this is the area of the cuts.
+        """
+        if self.stock is None:
+            return cuts
+        z0, _, x0, x1 = cuts
+        face = max(self.stock.back, self._face if self._face is not None else min(z0, self.stock.front))
+        beside = BESIDE * (self.stock.front - face + 2.0 * self.stock.radius)
+        right, radius = self.stock.front + beside, self.stock.radius
+        reach = max(radius, min(max(abs(x0), abs(x1)), radius + beside))
+        return min(face, max(z0, face - beside)), right, min(0.0, x0), reach
+
+    @property
+    def chuck_from(self) -> float | None:
+        """The Z of the left edge of the chuck as far as it is worth showing, or None without a chuck."""
+        face = self._face
+        return None if face is None else face - _CHUCK_SHOWN * 2.0 * self.clamped.radius
+
+    @property
+    def _face(self) -> float | None:
+        held = self.clamping
+        return -held.stick_out if held is not None and held.diameter else None
+
+
+def blank_of(picture: Picture) -> Blank | None:
+    """Return the specified stock and clamping of a program, or None if neither is specified."""
+    if picture.part is None:
+        return None
+    setting = picture.part.setting
+    stock, (z0, _, x0, x1) = setting.stock, picture.bounds
+    if isinstance(stock, StockSpec):
+        try:
+            stock = stock.stock(z0, 1.0 if picture.metric else MM_PER_INCH)
+        except StockError:  # The proof reports the error.
+            stock = None
+    if stock is None and (setting.clamping is None or not setting.clamping.diameter):
+        return None
+    needed = stock or bar(2.0 * max(abs(x0), abs(x1)), 0.0, z0)
+    return Blank(stock, needed, setting.clamping)
+
+
+def draw_blank(painter: QPainter, look: Look, blank: Blank, projection: Projection) -> None:
+    """Draw the stock as a filled section, and the chuck or collet and tailstock hatched."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    if blank.stock is not None:
+        ground = look.colour("frame")
+        ground.setAlphaF(_FILLED)
+        _fill(painter, stock_areas(blank.stock, projection), QBrush(ground))
+        pen = look.pen("ghost", 0.12)
+        pen.setDashPattern([5, 4])
+        painter.setPen(pen)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for line in stock_outline(blank.stock, projection):
+            painter.drawPolyline(polygon(line.columns, line.rows))
+    if blank.clamping is not None:
+        chuck = clamping_areas(blank.clamping, blank.clamped, projection)
+        _fill(painter, chuck, QBrush(look.colour("key")))
+        painter.setPen(look.pen("off", 0.14))
+        painter.setBrush(QBrush(look.colour("off"), Qt.BrushStyle.FDiagPattern))
+        for area in chuck:
+            painter.drawPolygon(polygon(area.columns, area.rows))
+
+
+def _fill(painter: QPainter, areas: list[Line], brush: QBrush) -> None:
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(brush)
+    for area in areas:
+        painter.drawPolygon(polygon(np.asarray(area.columns), np.asarray(area.rows)))
