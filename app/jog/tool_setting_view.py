@@ -17,6 +17,7 @@ from app.offsets.offset_values import Mode, marked, not_set, shown_value, signed
 from app.screen.drawings import draw_tip
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 from core.tool_edges import edge_name
@@ -32,6 +33,7 @@ FIELDS = (
     ("remark", "K"),
     ("master", "M"),
 )
+ROWS = len(FIELDS) // 2
 _ASKS = {"x": TOUCH_X, "z": TOUCH_Z}
 
 
@@ -74,7 +76,9 @@ class ToolPanel(Panel):
         self.frame(painter, join_messages("  ·  ", (tr("TOOL SETTING"), unit)))
         u = self.look.u
         room = self.inside().adjusted(-0.3 * u, 0, 0.3 * u, 0.3 * u)
-        head = QRectF(room.x(), room.y(), room.width(), min(10.5 * u, 0.36 * room.height()))
+        cells = ROWS * (FINGER + 0.5 * u)  # Each cell is a touch target.
+        high = min(10.5 * u, 0.36 * room.height(), max(room.height() - cells, 7.0 * u))
+        head = QRectF(room.x(), room.y(), room.width(), high)
         self._head(painter, head)
         rest = QRectF(
             room.x(), head.bottom() + 0.5 * u, room.width(), room.bottom() - head.bottom() - 0.5 * u
@@ -118,8 +122,7 @@ class ToolPanel(Panel):
 
     def _cells(self, painter: Painter, room: QRectF) -> None:
         u = self.look.u
-        rows = -(-len(FIELDS) // 2)
-        high, wide = (room.height() + 0.5 * u) / rows, (room.width() + 0.6 * u) / 2
+        high, wide = (room.height() + 0.5 * u) / ROWS, (room.width() + 0.6 * u) / 2
         for number, (name, key) in enumerate(FIELDS):
             row, column = divmod(number, 2)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - 0.6 * u, high - 0.5 * u)

@@ -25,6 +25,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.desk.status.machine_status import Tone
 from app.desk.translation import ENGLISH, Translate, speak, tr
+from app.screen.text_sizes import PanelSize, Role
 from app.screen.window_layout import FINGER
 from core.message import Message
 
@@ -143,8 +144,10 @@ FAMILY = "B612"
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 LEAST = 1.35  # Units: the smallest text.
-DESK_DPI = 96.0  # Dots per inch of a monitor that does not report its size.
 LEAST_ROW = 20.0  # Pixels: a line of text.
+_GROWN = 1.35  # Largest factor by which a text of a table is enlarged for the distance.
+_ROW_SHARE = {Role.TABLE: 0.9, Role.PROMPT: 0.95}  # Largest em height as a ratio to the height of the row.
+_ALONE = 1.1  # The same ratio for digits and capitals that have their row for themselves.
 SQUEEZED = 0.6  # A translation may be drawn at this fraction of its text size.
 CENTRE = Qt.AlignmentFlag.AlignCenter
 
@@ -170,7 +173,7 @@ class Look:
         self.palette = palette
         self.u = u
         self.caret = False  # An input field of the current page has the keyboard, so its caret is drawn.
-        self.mm = DESK_DPI / 25.4  # Pixels per millimeter of the screen.
+        self.screen = PanelSize()
         self._colours: dict[str, QColor] = {}
         self._fonts: dict[tuple[float, bool], QFont] = {}
 
@@ -186,16 +189,23 @@ class Look:
         The height is ``units`` of the window, but at most ``mm`` on the screen. A larger screen thus shows
         more rows. A row for ``touch`` is never lower than a fingertip on the smallest screen.
         """
-        high = min(units * self.u, mm * self.mm)
+        high = min(units * self.u, mm * self.screen.pixels_per_mm)
         return max(high, float(FINGER)) if touch else max(high, min(units * self.u, LEAST_ROW))
 
     def keys_high(self, rows: int) -> int:
         """Return the height of a number of rows of touch keys in pixels, each as high as a fingertip."""
         return math.ceil(rows * FINGER + (rows - 1) * 0.6 * self.u)
 
-    def measure(self, dots_per_inch: float) -> None:
-        """Set the resolution of the screen. Values outside 75…350 dots per inch are limited."""
-        self.mm = min(max(dots_per_inch, 75.0), 350.0) / 25.4
+    def em(self, size: float, role: Role, high: float) -> float:
+        """Return the em height in units of a text in a row that is ``high`` pixels high.
+
+        The height is at least ``size``. It is larger if the role of the text requires it at the size of this
+        screen, and the row has room.
+        """
+        least = self.screen.least_em(role) / self.u
+        room = high / self.u * _ROW_SHARE.get(role, _ALONE)
+        most = min(room, size * _GROWN) if role is Role.TABLE else room
+        return max(size, min(least, most))
 
     def repaint(self, palette: Palette) -> None:
         """Use the colors of another palette."""
@@ -330,14 +340,18 @@ class Painter(QPainter):
         raw: bool = False,
         margin: float = 0.0,
         fit: bool = True,
+        role: Role = Role.TABLE,
     ) -> None:
         """Draw one line of text in a palette color, ``size`` units high, or smaller if necessary.
+
+        It is larger if its role requires that, see ``Look.em``.
 
         The text is fitted into ``rect`` minus ``margin`` units, or elided. ``raw`` text is not translated,
         see ``put_raw``. Color and font remain set.
         """
         look = self.look
         room = rect.width() - margin * look.u
+        size = look.em(size, role, rect.height()) if fit else size
         self.setPen(look.colour(ink))
         self.setFont(look.fit(text, size, room, bold=bold) if fit else look.font(size, bold=bold))
         (put_raw if raw else put)(self, rect, at, text)

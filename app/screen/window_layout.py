@@ -59,6 +59,8 @@ class Places(NamedTuple):
     keys: Rect
 
 
+HEAD, HEAD_MOVES = 7.4, 10.2  # Units: height of the low readouts.
+
 LOW = 700
 """px: a lower window has smaller rows above and below its page, so that its targets fit a finger."""
 
@@ -112,14 +114,15 @@ def work_of(at: Places) -> Rect:
     return Rect(at.listing.x, at.listing.y, at.path.right - at.listing.x, at.path.h)
 
 
-def low_places(width: int, height: int, dock: bool) -> LowPlaces:
-    """Return the layout with the readouts in one row, for a window of this size in pixels.
+def low_places(width: int, height: int, dock: bool, *, moves: bool = False) -> LowPlaces:
+    """Return the layout with low readouts, for a window of this size in pixels.
 
+    The readouts are in one row. On a page on which axes can move, large positions are above the others.
     Title, dock, prompt and function keys have the same places as on the Automatic page.
     """
     at, u = places(width, height, dock), unit(width, height)
     gap, wide = _gap(u), at.strip.w
-    head = Rect(at.strip.x, at.position.y, wide, round(7.4 * u))
+    head = Rect(at.strip.x, at.position.y, wide, round((HEAD_MOVES if moves else HEAD) * u))
     strip = Rect(head.x, head.bottom + gap, wide, at.strip.h)
     top, high = strip.bottom + gap, round(2.8 * u)
     run = Rect(head.x, at.prompt.y - gap - high, wide, high)

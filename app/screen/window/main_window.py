@@ -29,6 +29,7 @@ from app.desk.translation import spoken, tr
 from app.screen.look import PALETTES, Look, dress, speak_in
 from app.screen.page_table import AUTOMATIC, PagesAhead
 from app.screen.panel import FingerPanel
+from app.screen.text_sizes import panel_size
 from app.screen.window.keyboard import EventTimes, Keyboard, key_of, letter_of
 from app.screen.window.keys import (
     ANSWER,
@@ -345,10 +346,11 @@ class MainWindow(QWidget):
             window.screenChanged.connect(self._measure)
 
     def _measure(self) -> None:
-        """Read the resolution of the screen, because list rows are limited in millimeters."""
+        """Read the real size of the screen, on which the heights of texts and list rows depend."""
         screen = self.screen()
         if screen is not None:
-            self.look.measure(screen.physicalDotsPerInch())
+            size, real = screen.size(), screen.physicalSize()
+            self.look.screen = panel_size(size.width(), size.height(), real.width(), real.height())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Handle a key press. A repeat counts only for keys that may repeat."""

@@ -17,6 +17,7 @@ from app.desk.status.readouts import UNKNOWN, AxisFigures, FeedFigures, Position
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
 from app.screen.panel import Panel, Shown
+from app.screen.text_sizes import Role
 from core.message import Message, join_messages
 
 LATHE_ROWS = 3
@@ -62,9 +63,11 @@ class PositionPanel(Panel):
         if axis.mark:
             box = QRectF(7.4 * u, row.center().y() - 2.6 * u, 4.8 * u, 5.2 * u)
             draw_mark(painter, box, axis.mark, 4.6, 0.4)
-        large = QRectF(12.6 * u, row.y(), 39.0 * u, row.height())
+        large = QRectF(13.2 * u, row.y(), 38.4 * u, row.height())
         plain = axis.homed and axis.known
-        painter.write(large, axis.value, 7.0 * share, "text" if plain else "soft", at=RIGHT)
+        painter.write(
+            large, axis.value, 7.0 * share, "text" if plain else "soft", at=RIGHT, role=Role.POSITION
+        )
         beside = QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height())
         painter.write(beside, axis.beside, 2.7 * max(share, 0.8), "soft", at=RIGHT, bold=False)
         if not plain:
@@ -106,10 +109,16 @@ class Gauge(Panel):
         painter.write(at, text, 1.6, "soft", at=flags)
 
     def figure(
-        self, painter: Painter, at: QRectF, text: str, size: float, flags: Qt.AlignmentFlag = RIGHT
+        self,
+        painter: Painter,
+        at: QRectF,
+        text: str,
+        size: float,
+        flags: Qt.AlignmentFlag = RIGHT,
+        role: Role = Role.TABLE,
     ) -> None:
         """Draw a value in bold, smaller if its place is narrow."""
-        painter.write(at, text, size, "text", at=flags)
+        painter.write(at, text, size, "text", at=flags, role=role)
 
     def bar(self, painter: Painter, at: QRectF, fraction: float, most: float) -> None:
         """Draw an override as a bar with its percentage. A value other than 100 % is highlighted."""
@@ -135,7 +144,7 @@ class FeedGauge(Gauge):
             return
         top = self.row(2.3, 4.8)
         unit = QRectF(top.right() - 7.6 * self.look.u, top.y(), 7.6 * self.look.u, top.height())
-        self.figure(painter, top.adjusted(0, 0, -8.2 * self.look.u, 0), view.value, 4.2)
+        self.figure(painter, top.adjusted(0, 0, -8.2 * self.look.u, 0), view.value, 4.2, role=Role.FEED)
         self.label(painter, unit.adjusted(0, 1.0 * self.look.u, 0, 1.0 * self.look.u), view.unit)
         self.label(painter, top, view.prefix)
         actual = self.row(7.4, 2.8)
@@ -230,10 +239,14 @@ class TimesGauge(Gauge):
 
 
 LATHE_COLUMNS = 3  # X, Z and C. A mill has more axes.
+HIGH = 9.0  # Units: a higher panel has room for large positions.
 
 
 class HeadLine(Panel):
-    """All readouts of one snapshot in one row. X has a filled Ø or a hollow R."""
+    """All readouts of one snapshot. X has a filled Ø or a hollow R.
+
+    A low panel shows them in one row. A high panel shows large positions above the other readouts.
+    """
 
     view: MachineStatus | None = None
     _shown: Shown[object] = Shown(None)
@@ -252,28 +265,45 @@ class HeadLine(Panel):
         u = self.look.u
         room = self.area().adjusted(1.2 * u, 2.2 * u, -1.2 * u, -0.6 * u)
         columns = max(LATHE_COLUMNS, len(position.axes))
+        if self.height() > HIGH * u:
+            row = QRectF(room.x(), room.y() - 0.4 * u, room.width(), room.height() - 2.2 * u)
+            self._axes(painter, row, position, room.width() / columns, 1.7)
+            self._readings(
+                painter, QRectF(room.x(), row.bottom(), room.width(), room.bottom() - row.bottom())
+            )
+            return
         share = (0.58 if columns == LATHE_COLUMNS else 0.7) * room.width() / columns
-        for number, axis in enumerate(position.axes):
-            at = QRectF(room.x() + number * share, room.y(), share - 1.4 * u, room.height())
-            self._axis(painter, at, axis)
+        self._axes(painter, room, position, share, 1.0)
         taken = columns * share
         rest = QRectF(room.x() + taken, room.y(), room.width() - taken, room.height())
         self._figures(painter, rest, view)
 
-    def _axis(self, painter: Painter, at: QRectF, axis: AxisFigures) -> None:
-        u = self.look.u
-        painter.write(QRectF(at.x(), at.y(), 3 * u, at.height()), axis.name, 2.8, "accent")
+    def _axes(
+        self, painter: Painter, room: QRectF, position: PositionFigures, share: float, scale: float
+    ) -> None:
+        look, gap = self.look, 1.8 * self.look.u
+        texts = [axis.value if axis.known else f"{axis.value} {UNKNOWN}" for axis in position.axes]
+        size = look.em(3.4 * scale, Role.POSITION, room.height())
+        rooms = [share - gap - _before(axis) * scale * look.u for axis in position.axes]
+        fonts = [look.fit(text, size, each, bold=True) for text, each in zip(texts, rooms, strict=True)]
+        size = min(font.pixelSize() for font in fonts) / look.u  # All axes have the same size.
+        for number, (axis, text) in enumerate(zip(position.axes, texts, strict=True)):
+            at = QRectF(room.x() + number * share, room.y(), share - gap, room.height())
+            self._name(painter, at, axis, scale)
+            ink = "text" if axis.homed and axis.known else "alarm"
+            painter.write(at, text, size, ink, at=RIGHT, fit=False, role=Role.POSITION)
+
+    def _name(self, painter: Painter, at: QRectF, axis: AxisFigures, scale: float) -> None:
+        u = scale * self.look.u
+        painter.write(QRectF(at.x(), at.y(), 3 * u, at.height()), axis.name, 2.8 * scale, "accent")
         if axis.mark:
             box = QRectF(at.x() + 2.8 * u, at.center().y() - 1.5 * u, 3.0 * u, 3.0 * u)
-            draw_mark(painter, box, axis.mark, 2.4, 0.25)
-        room = at.adjusted((6.4 if axis.mark else 3.2) * u, 0, 0, 0)
-        figure = axis.value if axis.known else f"{axis.value} {UNKNOWN}"
-        painter.write(room, figure, 3.4, "text" if axis.homed and axis.known else "alarm", at=RIGHT)
+            draw_mark(painter, box, axis.mark, 2.4 * scale, 0.25)
 
-    def _figures(self, painter: Painter, room: QRectF, view: MachineStatus) -> None:
-        u = self.look.u
+    def _cells(self, view: MachineStatus) -> tuple[tuple[str, str, float], ...]:
+        """Return label, value and share of the width of feed, spindle and tool."""
         feed, spindle = view.feed, view.spindle
-        cells = (
+        return (
             (
                 Message("FEED {override}", override=percent(feed.override)),
                 f"{feed.prefix} {feed.actual} {tr(feed.actual_unit)}".strip(),
@@ -286,13 +316,34 @@ class HeadLine(Panel):
             ),
             ("TOOL", f"{view.tool} {view.secondary}", 0.2),
         )
-        x = room.x() + 1.6 * u
-        for label, figure, share in cells:
+
+    def _figures(self, painter: Painter, room: QRectF, view: MachineStatus) -> None:
+        """Draw feed, spindle and tool, each with its label above."""
+        u, x = self.look.u, room.x() + 1.6 * self.look.u
+        for label, figure, share in self._cells(view):
             wide = share * (room.width() - 1.6 * u)
             painter.write(QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), label, 1.5, "soft")
-            below = QRectF(x, room.y() + 1.5 * u, wide - u, room.height() - 1.7 * u)
-            painter.write(below, figure, 2.3, "text")
+            below = QRectF(x, room.y() + 1.5 * u, wide - 1.6 * u, room.height() - 1.7 * u)
+            painter.write(below, figure, 2.3, "text", role=Role.FEED)
             x += wide
+
+    def _readings(self, painter: Painter, room: QRectF) -> None:
+        """Draw feed, spindle and tool in one row, each with its label at the left."""
+        if self.view is None:
+            return
+        u, x = self.look.u, room.x()
+        for label, figure, share in self._cells(self.view):
+            wide = share * room.width() - u
+            named = QRectF(x, room.y(), 0.38 * wide, room.height())
+            painter.write(named, label, 1.6, "soft")
+            value = named.adjusted(named.width() + 0.6 * u, 0, wide - named.width(), 0)
+            painter.write(value, figure, 2.5, "text", role=Role.FEED)
+            x += wide + u
+
+
+def _before(axis: AxisFigures) -> float:
+    """Return the width of the name and the mark of an axis in units."""
+    return 6.8 if axis.mark else 3.2
 
 
 # --- run in one row -----------------------------------------------------------------------------------

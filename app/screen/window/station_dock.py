@@ -189,7 +189,7 @@ class StationDock(FingerPanel):
             painter.write(row, line, 2.3, "text", fit=False)
         inner.setHeight(inner.height() / 2)
         painter.write(inner, "" if "H" in self.mute else "H", 2.2, "accent", at=RIGHT)
-        painter.write(inner.translated(0, inner.height()), "PAUSE", 1.5, "accent", at=RIGHT)
+        painter.write(inner.translated(0, inner.height()), "PAUSE", 1.5, "accent", at=RIGHT, fit=False)
         press, release = partial(desk.hands.hold, down=True), partial(desk.hands.hold, down=False)
         self.controls.append(Control(box, lambda _at: press(), None, release, always=True))
 

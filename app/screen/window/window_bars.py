@@ -17,6 +17,7 @@ from app.desk.translation import tr
 from app.screen.accessible import announce
 from app.screen.look import CENTRE, LEAST, LEFT, RIGHT, Look, Painter, draw_sign, put, width_of
 from app.screen.panel import Panel, Shown
+from app.screen.text_sizes import Role
 from app.screen.window.keys import ANSWER, NO
 from app.screen.window_layout import FINGER
 
@@ -24,6 +25,7 @@ TARGET = 13.0  # Units: width of the touch target of an answer.
 # Background color and sign.
 ANSWERS = {Sort.ANSWER: ("pause", "!"), Sort.DONE: ("run", "✓"), Sort.ASKED: ("wait", "?")}
 PROMPT_SHARE = 0.47  # Fraction of the prompt line's height for message and question.
+LEAST_TWO = 5.0  # Units: smallest height of the state for two lines.
 SIGN = 5.0  # Units: width of the sign.
 
 
@@ -69,10 +71,11 @@ class TitleLine(Panel):
 
     def _draw_state(self, painter: Painter, state: str, tone: Tone) -> None:
         look, u, high, state = self.look, self.look.u, self.height(), tr(state)
-        box = QRectF(60 * u, 0.6 * u, 50 * u, high - 1.3 * u)
+        box = QRectF(60 * u, 0.2 * u, 50 * u, high - 0.5 * u)
         painter.fill(box, tone.value)
         ink = look.colour("on_state")
-        painter.setFont(look.fit(state, 2.5, box.width() - 8 * u, bold=True))
+        size = look.em(2.5, Role.STATE, box.height())
+        painter.setFont(look.fit(state, size, box.width() - 8 * u, bold=True))
         wide = QFontMetricsF(painter.font()).horizontalAdvance(state)
         left = box.center().x() - (wide + 3.6 * u) / 2
         draw_sign(painter, QRectF(left, box.center().y() - 1.2 * u, 2.4 * u, 2.4 * u), tone, ink)
@@ -121,7 +124,8 @@ class PromptLine(Panel):
         if self.question and self.asked:
             area.setRight(self._targets(painter, area))  # The targets use the full height, for touch.
         upper = QRectF(area.x(), area.y(), area.width(), PROMPT_SHARE * area.height())
-        self._state(painter, area.adjusted(0, upper.height(), 0, 0))
+        noticed = bool(self.answer or self.question)
+        self._state(painter, area.adjusted(0, upper.height() if noticed else 0, 0, 0))
         both = bool(self.answer and self.question)
         half = upper.width() / 2
         if self.answer:
@@ -136,9 +140,31 @@ class PromptLine(Panel):
         room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
         if self.reason:
             low = room.adjusted(0, 0.48 * room.height(), 0, -0.05 * room.height())
-            painter.write(low, self.reason, 1.9, "text", bold=False)
+            painter.write(low, self.reason, 1.9, "text", bold=False, role=Role.PROMPT)
             room.setBottom(low.top())
-        painter.write(room, self.state, 2.1 if self.reason else 2.3, "text")
+        lines = self._lines(tr(self.state), room)
+        high = room.height() / len(lines)
+        for number, line in enumerate(lines):
+            row = QRectF(room.x(), room.y() + number * high, room.width(), high)
+            size = 2.1 if self.reason else 2.3
+            painter.write(row, line, size, "text", raw=True, role=Role.PROMPT)
+
+    def _lines(self, text: str, room: QRectF) -> list[str]:
+        """Return the text as one line, or as two lines if it can be larger then."""
+        look, words = self.look, text.split(" ")
+        one = look.em(2.3, Role.PROMPT, room.height())
+        two = look.em(2.3, Role.PROMPT, room.height() / 2)
+        wide = width_of(text, look.font(one, bold=True))
+        if (
+            len(words) < 2
+            or room.height() < LEAST_TWO * look.u
+            or wide <= room.width()
+            or two <= one * room.width() / wide
+        ):
+            return [text]
+        cuts = (" ".join(words[:at]) for at in range(1, len(words)))
+        first = min(cuts, key=lambda part: abs(2 * len(part) - len(text)))
+        return [first, text[len(first) + 1 :].strip()]
 
     def _notice(self, painter: Painter, area: QRectF, text: str, sort: Sort) -> None:
         u = self.look.u
@@ -147,7 +173,7 @@ class PromptLine(Panel):
         painter.write(
             QRectF(area.x(), area.y(), SIGN * u, area.height()), sign, 3.0, "on_state", at=CENTRE, raw=True
         )
-        painter.write(area.adjusted(SIGN * u, 0, -1.4 * u, 0), text, 2.3, "on_state")
+        painter.write(area.adjusted(SIGN * u, 0, -1.4 * u, 0), text, 2.3, "on_state", role=Role.PROMPT)
 
     def _targets(self, painter: Painter, area: QRectF) -> float:
         """Draw the targets for yes and no at the right end, and return where the text must end."""

@@ -215,7 +215,8 @@ class Frame(QWidget):
         width, height = self.width(), self.height()
         self.look.resize(unit(width, height))
         with_dock = self.dock is not None and self.desk.settings.now.dock
-        at, low = places(width, height, with_dock), low_places(width, height, with_dock)
+        at = places(width, height, with_dock)
+        low = low_places(width, height, with_dock, moves=self.page.STARTS)
         self._docked = with_dock
         work = work_of(at) if large else low.work
         rows = Rect(work.x, work.y, work.w, min(self.notices.take_room(), work.h // 3))

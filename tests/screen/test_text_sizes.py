@@ -1,0 +1,154 @@
+"""Heights of texts by distance: the real size of a panel, and what every page draws on it."""
+
+from __future__ import annotations
+
+from math import radians, tan
+
+import pytest
+
+from app.screen import page_table
+from app.screen.look import DARK, Look
+from app.screen.text_sizes import CAPITALS, PanelSize, Role, panel_size
+from app.screen.window_layout import low_places, places, unit
+from tests.screen.lathe import Operator
+from tests.screen.text_heights import recorded
+
+# Pixels and mm of panels: 7, 10 and 10.1 in, 12.1 in, 15.6 in, 21.5 in, 27 in, and 15.6 in upright.
+PANELS = {
+    "7": (1024, 600, 154, 90),
+    "10": (1024, 600, 222, 130),
+    "10.1": (1280, 800, 217, 136),
+    "12.1": (1280, 800, 261, 163),
+    "15.6": (1920, 1080, 345, 194),
+    "21.5": (1920, 1080, 476, 268),
+    "27": (3840, 2160, 598, 336),
+    "upright": (1080, 1920, 194, 345),
+}
+# Requirements that not every page meets in English and Spanish: the height of the lowest text of a role in
+# percent of the height that its distance requires. On pages on which axes can move and on the Automatic page,
+# the position is higher. Three axes with eight characters limit the position, feed shares its row with the
+# spindle and the tool, and the height of the title line limits the state. A Spanish sentence that is too wide
+# for its row is drawn at 60 % of its height at the least.
+SHORT = {
+    "7": {Role.POSITION: 39, Role.STATE: 39, Role.PROMPT: 54, Role.FEED: 34, Role.TABLE: 24},
+    "10": {Role.POSITION: 34, Role.STATE: 34, Role.PROMPT: 52, Role.FEED: 34, Role.TABLE: 24},
+    "10.1": {Role.POSITION: 34, Role.STATE: 39, Role.PROMPT: 51, Role.FEED: 34, Role.TABLE: 22},
+    "12.1": {Role.POSITION: 41, Role.STATE: 48, Role.PROMPT: 62, Role.FEED: 41, Role.TABLE: 25},
+    "15.6": {Role.POSITION: 55, Role.STATE: 65, Role.PROMPT: 83, Role.FEED: 54, Role.TABLE: 39},
+    "21.5": {Role.POSITION: 75, Role.STATE: 90, Role.FEED: 75, Role.TABLE: 55},
+    "27": {Role.POSITION: 95, Role.TABLE: 68},
+    "upright": {Role.POSITION: 30, Role.STATE: 35, Role.PROMPT: 47, Role.FEED: 30, Role.TABLE: 20},
+}
+# The position on the pages on which axes can move, in percent of the required height.
+MOVING = {"7": 58, "10": 49, "10.1": 49, "12.1": 59, "15.6": 79, "21.5": 98, "27": 98, "upright": 44}
+PAGES = (
+    page_table.MENU,
+    page_table.AUTOMATIC,
+    page_table.SEARCHTO,
+    page_table.JOG,
+    page_table.MDI,
+    page_table.PROGRAMS,
+    page_table.TOOLS,
+    page_table.SECCMP,
+    page_table.ZERO,
+    page_table.PART,
+    page_table.SPECIAL,
+    page_table.EDITOR,
+)
+
+
+def test_the_angle_of_a_role_at_its_distance() -> None:
+    assert Role.POSITION.least_mm(small=False) == pytest.approx(2000 * tan(radians(20 / 60)))
+    assert Role.POSITION.least_mm(small=False) == pytest.approx(11.64, abs=0.01)
+    assert Role.PROMPT.least_mm(small=False) == pytest.approx(6.98, abs=0.01)
+    assert Role.TABLE.least_mm(small=False) == pytest.approx(3.26, abs=0.01)
+    assert Role.TABLE.least_mm(small=True) == pytest.approx(2.33, abs=0.01)
+
+
+@pytest.mark.parametrize(("name", "small"), [("7", True), ("10", False), ("21.5", False)])
+def test_a_panel_under_10_inches_is_small(name: str, small: bool) -> None:
+    size = panel_size(*PANELS[name])
+    width, _, wide, _ = PANELS[name]
+    assert size.small is small
+    assert size.pixels_per_mm == pytest.approx(width / wide, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "reported",
+    [
+        (0, 0),  # nothing is known
+        (-1, 90),
+        (16, 9),  # an aspect ratio
+        (1600, 900),  # centimeters taken for millimeters
+        (154, 154),  # not the shape of its pixels
+    ],
+)
+def test_an_implausible_size_counts_as_a_monitor_of_96_dots_per_inch(reported: tuple[int, int]) -> None:
+    size = panel_size(1024, 600, *reported)
+    assert size.pixels_per_mm == pytest.approx(96 / 25.4)
+    assert not size.small
+
+
+def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
+    look = Look(DARK, 8.0)
+    look.screen = PanelSize(5.0)  # A position has capitals of 58.2 pixels, and a table of 16.3 pixels.
+    needed = 58.18 / CAPITALS / 8.0
+    assert look.em(5.0, Role.POSITION, 200.0) == pytest.approx(needed, rel=1e-3)
+    assert look.em(5.0, Role.POSITION, 56.0) == pytest.approx(7.7)  # 1.1 times the row of 7 units
+    assert look.em(5.0, Role.POSITION, 8.0) == 5.0  # never smaller than its least size
+    assert look.em(2.0, Role.TABLE, 80.0) == pytest.approx(2.7)  # 1.35 times
+    assert look.em(1.5, Role.TABLE, 12.8) == pytest.approx(1.5)
+    look.screen = PanelSize(2.0)
+    assert look.em(2.0, Role.TABLE, 80.0) == 2.0  # A large screen needs no more.
+
+
+@pytest.mark.parametrize("size", [(1024, 600), (1280, 800), (1920, 1080), (3840, 2160), (1080, 1920)])
+@pytest.mark.parametrize("dock", [True, False])
+def test_the_large_position_takes_2_8_units_of_a_page(size: tuple[int, int], dock: bool) -> None:
+    low, moves, u = low_places(*size, dock), low_places(*size, dock, moves=True), unit(*size)
+    assert moves.head.h - low.head.h == pytest.approx(2.8 * u, abs=1)
+    assert low.work.h - moves.work.h == moves.head.h - low.head.h
+    assert moves.work.bottom == low.work.bottom <= places(*size, dock).prompt.y
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize("name", PANELS)
+def test_texts_of_all_pages_are_as_high_as_stated(
+    operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, language: str
+) -> None:
+    size, lowest = panel_size(*PANELS[name]), dict[Role, tuple[float, str]]()
+    window, desk = operator.window, operator.stage.desk
+    operator.stage.make_ready()
+    window.resize(*PANELS[name][:2])
+    window.look.screen = size
+    desk.settings.choose("language", language)
+    with recorded(monkeypatch) as texts:
+        for page in PAGES:
+            assert operator.frame.go(page)
+            window.refresh()
+            window.grab()
+    for each in texts:
+        share = 100 * each.capitals / (each.role.least_mm(small=size.small) * size.pixels_per_mm)
+        lowest[each.role] = min((share, f"{each.panel}: {each.text}"), lowest.get(each.role, (999.0, "")))
+    assert set(lowest) == set(Role)
+    for role, (share, text) in lowest.items():
+        assert share >= SHORT[name].get(role, 98), (role, share, text)
+
+
+@pytest.mark.parametrize("page", [page_table.JOG, page_table.MDI, page_table.SEARCHTO])
+@pytest.mark.parametrize("name", PANELS)
+def test_the_position_is_large_where_axes_can_move(
+    operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, page: str
+) -> None:
+    size = panel_size(*PANELS[name])
+    operator.stage.make_ready()
+    operator.window.resize(*PANELS[name][:2])
+    operator.window.look.screen = size
+    assert operator.frame.go(page)
+    operator.window.refresh()
+    with recorded(monkeypatch) as texts:
+        operator.frame.head.grab()
+    least = MOVING[name] / 100 * Role.POSITION.least_mm(small=size.small) * size.pixels_per_mm
+    heights = [each.capitals for each in texts if each.role is Role.POSITION]
+    assert len(heights) == 3
+    assert min(heights) >= least

@@ -1,0 +1,53 @@
+"""Heights of the painted texts of a window, from what its panels draw on the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import pytest
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QFontMetricsF, QPainter
+
+from app.desk.translation import tr
+from app.screen import look
+from app.screen.text_sizes import Role
+from app.screen.window.window_bars import TitleLine
+
+
+class Text(NamedTuple):
+    """One drawn text: ``capitals`` is the height of its capitals in pixels."""
+
+    text: str
+    role: Role
+    capitals: float
+    panel: str
+
+
+@contextmanager
+def recorded(patch: pytest.MonkeyPatch) -> Iterator[list[Text]]:
+    """Everything that is drawn inside, with the role of each text."""
+    texts: list[Text] = []
+    roles = [Role.TABLE]
+    write, put_raw = look.Painter.write, look.put_raw
+
+    def noted(painter: look.Painter, *args: Any, **more: Any) -> None:
+        roles.append(more.get("role", Role.TABLE))
+        write(painter, *args, **more)
+        roles.pop()
+
+    def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
+        panel = painter.device()
+        role = roles[-1]
+        if isinstance(panel, TitleLine) and text == tr(panel.state):
+            role = Role.STATE
+        if text.strip():
+            capitals = QFontMetricsF(painter.font()).capHeight()
+            texts.append(Text(text, role, capitals, type(panel).__name__))
+        put_raw(painter, rect, flags, text)
+
+    patch.setattr(look.Painter, "write", noted)
+    patch.setattr(look, "put_raw", put)
+    yield texts
+    patch.undo()
