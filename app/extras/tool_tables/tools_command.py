@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from app.cli.actions.meant_changes import add_consent_options
-from app.cli.who_changes import add_as_option
+from app.cli.who_changes import add_as_option, add_consent_options
 from core.extras.tool_tables.table_file import FORMATS
 
 if TYPE_CHECKING:

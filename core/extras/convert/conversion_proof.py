@@ -204,7 +204,7 @@ class _Comparison:
             self._spindle(step, action, wanted)
             return
         if isinstance(action, actions.ProgramStop):
-            action = replace(action, message="")
+            action = actions.ProgramStop(action.optional)
         # The machine file defines the outputs of other M codes, and the interpreter applies it.
         if action != wanted and not (isinstance(action, actions.Output) and step.kind is Kind.M):
             self._differs(step.line, "proof-differs", action, wanted, "the step")

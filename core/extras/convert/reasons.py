@@ -146,7 +146,7 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Enter the nose radius in secondary offset D{number}.",
     ),
     "offset-cancelled": (
-        "{word} cancels the tool offset; the converted program keeps it until the next T or home.",
+        "{word} cancels the tool offset; the converted program cancels it at the next T or home.",
         "Check the moves that follow.",
     ),
     "peck-clearance": (

@@ -1,1 +1,1 @@
-"""The artefacts of a release: an environment with all Python packages, as a tarball and a Debian package."""
+"""The artifacts of a release: an environment with all Python packages, as a tarball and a Debian package."""
