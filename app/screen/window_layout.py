@@ -117,12 +117,13 @@ def work_of(at: Places) -> Rect:
 def low_places(width: int, height: int, dock: bool, *, moves: bool = False) -> LowPlaces:
     """Return the layout with low readouts, for a window of this size in pixels.
 
-    The readouts are in one row. On a page on which axes can move, large positions are above the others.
+    The readouts are in one row. On a page on which axes can move, large positions are above the others,
+    unless the window is so low that the targets of the page would no longer fit a finger.
     Title, dock, prompt and function keys have the same places as on the Automatic page.
     """
     at, u = places(width, height, dock), unit(width, height)
     gap, wide = _gap(u), at.strip.w
-    head = Rect(at.strip.x, at.position.y, wide, round((HEAD_MOVES if moves else HEAD) * u))
+    head = Rect(at.strip.x, at.position.y, wide, round((HEAD_MOVES if moves and height >= LOW else HEAD) * u))
     strip = Rect(head.x, head.bottom + gap, wide, at.strip.h)
     top, high = strip.bottom + gap, round(2.8 * u)
     run = Rect(head.x, at.prompt.y - gap - high, wide, high)
